@@ -1,0 +1,3 @@
+//! zrak-cli
+
+fn main() {}
