@@ -1,0 +1,60 @@
+//! From the builder's tree to the nodes that the renderer reads.
+
+use zrak_core::accel::{MAX_DEPTH, Node};
+use zrak_core::math::Bounds;
+use zrak_core::scene::{PrimKind, PrimRef};
+
+use crate::binary::{BinaryNode, BinaryTree, build};
+use crate::collapse::adopt;
+
+/// The same primitives in trees of both widths.
+#[derive(Clone, Debug)]
+pub struct Trees {
+    /// Binary tree.
+    pub nodes2: Vec<Node<2>>,
+    /// Eight-wide tree.
+    pub nodes8: Vec<Node<8>>,
+}
+
+/// Builds the trees over primitives with their bounds. Without primitives, the root has no children.
+#[must_use]
+pub fn build_trees(prims: &[(PrimRef, Bounds)]) -> Trees {
+    let bounds: Vec<Bounds> = prims.iter().map(|p| p.1).collect();
+    let tree = build(&bounds);
+    Trees { nodes2: emit(&tree, prims), nodes8: emit(&tree, prims) }
+}
+
+/// Lays out the nodes of a wide tree, depth first.
+///
+/// # Panics
+/// If the tree is deeper than [`MAX_DEPTH`], which [`build`] does not let happen.
+fn emit<const N: usize>(tree: &BinaryTree, prims: &[(PrimRef, Bounds)]) -> Vec<Node<N>> {
+    let mut nodes = vec![Node::EMPTY];
+    if tree.nodes.is_empty() {
+        return nodes;
+    }
+    // (binary node, slot of the wide node that it becomes, depth)
+    let mut tasks = vec![(0_u32, 0_usize, 1_usize)];
+    while let Some((source, slot, depth)) = tasks.pop() {
+        assert!(depth <= MAX_DEPTH, "tree too deep");
+        let mut node = Node::<N>::EMPTY;
+        for (i, child) in adopt::<N>(tree, source).into_iter().enumerate() {
+            let (bounds, kind) = tree.nodes[child as usize];
+            for axis in 0..3 {
+                node.lo[axis][i] = bounds.lo.to_array()[axis];
+                node.hi[axis][i] = bounds.hi.to_array()[axis];
+            }
+            node.children[i] = match kind {
+                BinaryNode::Leaf(prim) => prims[prim as usize].0,
+                BinaryNode::Inner(_) => {
+                    let index = nodes.len();
+                    nodes.push(Node::EMPTY);
+                    tasks.push((child, index, depth + 1));
+                    PrimRef::new(PrimKind::Node, index as u32)
+                }
+            };
+        }
+        nodes[slot] = node;
+    }
+    nodes
+}

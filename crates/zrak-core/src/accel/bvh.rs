@@ -1,0 +1,183 @@
+//! Bounding volume hierarchies of any width, with one primitive in a leaf.
+//!
+//! A node holds the boxes of its children, so that one visit tests all of them: two at a time
+//! suit the GPU's 16-byte loads, eight the processor's vector registers. A leaf's box is exactly the
+//! bounds of its primitive: the test that the definition of a hit asks for is the one that the tree
+//! makes anyway.
+
+use super::{Accel, NO_HIT, found, keep_closer};
+use crate::accessor::{Array, Stack};
+use crate::interaction::Hit;
+use crate::math::{SLAB_SLACK, max, min, reciprocal_or_huge};
+use crate::ray::Ray;
+use crate::sampler::Sampler;
+use crate::scene::{PrimRef, SceneView};
+
+/// Node of a tree with up to `N` children: structure of arrays, by axis and child.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(16))]
+pub struct Node<const N: usize> {
+    /// Smallest coordinates of the children's boxes.
+    pub lo: [[f32; N]; 3],
+    /// Largest coordinates of the children's boxes.
+    pub hi: [[f32; N]; 3],
+    /// The children; [`PrimRef::NONE`] in slots without one, with an empty box.
+    pub children: [PrimRef; N],
+    /// Nothing; keeps the size a power of two.
+    pub _pad: [u32; N],
+}
+
+const _: () = assert!(size_of::<Node<2>>() == 64);
+const _: () = assert!(size_of::<Node<8>>() == 256);
+
+impl<const N: usize> Node<N> {
+    /// Node without children. Their boxes lie at infinity in one octant; a ray that runs there and
+    /// has hit nothing visits them in vain, for there is no primitive in them.
+    pub const EMPTY: Self = Self {
+        lo: [[f32::INFINITY; N], [f32::NEG_INFINITY; N], [f32::INFINITY; N]],
+        hi: [[f32::INFINITY; N], [f32::NEG_INFINITY; N], [f32::INFINITY; N]],
+        children: [PrimRef::NONE; N],
+        _pad: [0; N],
+    };
+}
+
+/// Most nodes on the way from the root of a tree to a leaf, of any width. A visit leaves at most
+/// N - 1 children behind, which bounds the traversal's stack.
+pub const MAX_DEPTH: usize = 48;
+
+/// Binary tree with the stack that it needs.
+pub type Bvh2<'a> = Bvh<'a, 2, MAX_DEPTH>;
+/// Eight-wide tree with the stack that it needs.
+pub type Bvh8<'a> = Bvh<'a, 8, { 7 * MAX_DEPTH }>;
+
+/// A tree with up to `N` children to a node and a stack of `S` entries; node 0 is its root.
+#[derive(Clone, Copy)]
+pub struct Bvh<'a, const N: usize, const S: usize> {
+    /// All nodes.
+    pub nodes: Array<'a, Node<N>>,
+}
+
+/// A child to visit, and where the ray enters its box.
+type Entry = (f32, PrimRef);
+
+impl<const N: usize, const S: usize> Accel for Bvh<'_, N, S> {
+    #[inline(always)]
+    fn closest_hit(&self, scene: &SceneView, ray: &Ray, sampler: &Sampler) -> Option<Hit> {
+        let inv_d = ray.d.map(reciprocal_or_huge);
+        let mut stack = Stack::<Entry, S>::new();
+        let mut best = NO_HIT;
+        let mut current: Entry = (0.0, PrimRef(0));
+        loop {
+            // Go down to a leaf, the nearest child first.
+            while current.1.is_node() {
+                let node = self.nodes.get(current.1.index());
+                let mut enter = [0.0; N];
+                let mut leave = [0.0; N];
+                for i in 0..N {
+                    let x0 = (node.lo[0][i] - ray.o.x) * inv_d.x;
+                    let x1 = (node.hi[0][i] - ray.o.x) * inv_d.x;
+                    let y0 = (node.lo[1][i] - ray.o.y) * inv_d.y;
+                    let y1 = (node.hi[1][i] - ray.o.y) * inv_d.y;
+                    let z0 = (node.lo[2][i] - ray.o.z) * inv_d.z;
+                    let z1 = (node.hi[2][i] - ray.o.z) * inv_d.z;
+                    enter[i] = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), 0.0));
+                    // The slack keeps the test conservative; beyond the closest hit nothing counts.
+                    leave[i] = min(
+                        min(max(x0, x1), min(max(y0, y1), max(z0, z1))) * SLAB_SLACK,
+                        best.t,
+                    );
+                }
+                current = match next_child(&node, &enter, &leave, &mut stack) {
+                    Some(child) => child,
+                    None => match pop(&mut stack, best.t) {
+                        Some(entry) => entry,
+                        None => return found(best),
+                    },
+                };
+            }
+            keep_closer(&mut best, scene, current.1, ray, sampler, current.0);
+            current = match pop(&mut stack, best.t) {
+                Some(entry) => entry,
+                None => return found(best),
+            };
+        }
+    }
+}
+
+/// Takes the next entry that can still hold a closer hit.
+#[inline(always)]
+fn pop<const S: usize>(stack: &mut Stack<Entry, S>, t_best: f32) -> Option<Entry> {
+    loop {
+        let entry = stack.pop()?;
+        // An equally close one with a smaller handle would count.
+        if entry.0 <= t_best {
+            return Some(entry);
+        }
+    }
+}
+
+/// The nearest child that the ray meets; the others go on the stack, the farthest first.
+#[inline(always)]
+fn next_child<const N: usize, const S: usize>(
+    node: &Node<N>,
+    enter: &[f32; N],
+    leave: &[f32; N],
+    stack: &mut Stack<Entry, S>,
+) -> Option<Entry> {
+    if N == 2 {
+        let first = (enter[0], node.children[0]);
+        let second = (enter[1], node.children[1]);
+        return match (enter[0] <= leave[0], enter[1] <= leave[1]) {
+            (true, true) => {
+                let (near, far) =
+                    if second.0 < first.0 { (second, first) } else { (first, second) };
+                stack.push(far);
+                Some(near)
+            }
+            (true, false) => Some(first),
+            (false, true) => Some(second),
+            (false, false) => None,
+        };
+    }
+    let mut mask = 0_u32;
+    for i in 0..N {
+        mask |= u32::from(enter[i] <= leave[i]) << i;
+    }
+    if mask == 0 {
+        return None;
+    }
+    let take = |mask: &mut u32| {
+        let i = mask.trailing_zeros() as usize % N;
+        *mask &= *mask - 1;
+        (enter[i], node.children[i])
+    };
+    let first = take(&mut mask);
+    if mask == 0 {
+        return Some(first);
+    }
+    let second = take(&mut mask);
+    let (mut near, far) = if second.0 < first.0 { (second, first) } else { (first, second) };
+    if mask == 0 {
+        stack.push(far);
+        return Some(near);
+    }
+    // Three or more: sort by insertion.
+    let mut sorted = [near; N];
+    sorted[1] = far;
+    let mut n = 2;
+    while mask != 0 {
+        let entry = take(&mut mask);
+        let mut k = n;
+        while k > 0 && entry.0 < sorted[k - 1].0 {
+            sorted[k % N] = sorted[k - 1];
+            k -= 1;
+        }
+        sorted[k % N] = entry;
+        n += 1;
+    }
+    near = sorted[0];
+    for entry in sorted[1..n].iter().rev() {
+        stack.push(*entry);
+    }
+    Some(near)
+}

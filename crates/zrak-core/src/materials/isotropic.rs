@@ -1,0 +1,31 @@
+//! Isotropic phase function.
+
+use bytemuck::{Pod, Zeroable};
+
+use super::Scatter;
+use crate::math::{Vec3, square_to_uniform_sphere};
+use crate::sampler::{BounceDim, Sampler};
+use crate::scene::SceneView;
+use crate::textures::ColorInput;
+
+/// Scatters into every direction alike: 1 / (4 pi) per steradian.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Isotropic {
+    /// Single-scattering albedo.
+    pub albedo: ColorInput,
+}
+
+impl Isotropic {
+    /// Direction after a collision at the world-space point `p`.
+    #[inline(always)]
+    #[must_use]
+    pub fn scatter(&self, scene: &SceneView, p: Vec3, sampler: &Sampler) -> Scatter {
+        let wi = square_to_uniform_sphere(
+            sampler.at_bounce(BounceDim::DirectionU),
+            sampler.at_bounce(BounceDim::DirectionV),
+        );
+        // Off by rounding; directions are of unit length.
+        Scatter { wi: wi.normalized(), attenuation: self.albedo.evaluate(scene, p, [0.0; 2]) }
+    }
+}

@@ -1,0 +1,52 @@
+//! Ideal diffuse reflection, on both sides of the surface.
+
+use bytemuck::{Pod, Zeroable};
+
+use super::Response;
+use crate::interaction::SurfaceInteraction;
+use crate::math::{Vec3, dot, square_to_uniform_sphere};
+use crate::sampler::{BounceDim, Sampler};
+use crate::scene::SceneView;
+use crate::textures::ColorInput;
+
+/// f = albedo / pi.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Lambertian {
+    /// Albedo.
+    pub albedo: ColorInput,
+}
+
+impl Lambertian {
+    #[inline(always)]
+    pub(super) fn respond(
+        &self,
+        scene: &SceneView,
+        surface: &SurfaceInteraction,
+        d: Vec3,
+        sampler: &Sampler,
+    ) -> Response {
+        let n = if surface.is_front(d) { surface.n } else { -surface.n };
+        let wi = sample_cosine(
+            n,
+            sampler.at_bounce(BounceDim::DirectionU),
+            sampler.at_bounce(BounceDim::DirectionV),
+        );
+        // The density cos / pi cancels the cosine and the 1 / pi of f.
+        Response::scattered(wi, self.albedo.evaluate(scene, surface.p, surface.uv))
+    }
+}
+
+/// Direction around the unit vector `n` with density cos / pi per steradian: the sum of `n` and a
+/// uniform point on the unit sphere, scaled to unit length.
+#[inline(always)]
+pub(super) fn sample_cosine(n: Vec3, u: f32, v: f32) -> Vec3 {
+    let sum = n + square_to_uniform_sphere(u, v);
+    let length_squared = sum.length_squared();
+    // The point opposite of n: any direction of the hemisphere will do.
+    if length_squared < 1e-12 {
+        return n;
+    }
+    let wi = sum.normalized();
+    if dot(wi, n) > 0.0 { wi } else { n }
+}

@@ -1,0 +1,63 @@
+//! Medium of constant density.
+//!
+//! The distance to the first collision is exponentially distributed: with extinction coefficient
+//! s, the chance to get farther than x is exp(-s x), so x = -ln(1 - u) / s. Each medium draws its own
+//! distance along the part of the ray inside its boundary, and the nearest of all events is taken:
+//! the minimum of independent exponentials has the sum of their coefficients, so overlapping media
+//! add up. No state says which media a ray is in, hence none can be wrong: a camera may stand
+//! inside, and a boundary may touch or coincide with other surfaces.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::math::{gamma, ln, max};
+use crate::ray::Ray;
+use crate::sampler::Sampler;
+use crate::scene::{MaterialRef, PrimRef, SceneView};
+use crate::shapes::{boundary_interval, boundary_surely_contains};
+
+/// Homogeneous medium inside a closed convex boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct ConstantMedium {
+    /// A sphere, moving sphere, box, or instance of one.
+    pub boundary: PrimRef,
+    /// Its phase function.
+    pub material: MaterialRef,
+    /// Mean free path with the sign turned: -1 over the extinction coefficient.
+    pub neg_mean_free_path: f32,
+    /// Nothing.
+    pub _pad: u32,
+}
+
+const _: () = assert!(size_of::<ConstantMedium>() == 16);
+
+impl ConstantMedium {
+    /// Parameter of the first collision of a unit-length ray, at least `t_enter`; `index` is the
+    /// medium's own.
+    #[inline(always)]
+    #[must_use]
+    pub fn intersect(
+        &self,
+        scene: &SceneView,
+        index: u32,
+        ray: &Ray,
+        sampler: &Sampler,
+        t_enter: f32,
+    ) -> Option<f32> {
+        let [start, end] = boundary_interval(scene, self.boundary, ray)?;
+        let u = sampler.free_flight(index);
+        let t = max(start + self.neg_mean_free_path * ln(1.0 - u), t_enter);
+        if t >= end {
+            return None;
+        }
+        // An event within rounding of the boundary is not taken: from a point that rounding put
+        // outside, light would leave without crossing the surface that the medium fills.
+        let p = ray.at(t);
+        let p_error = (ray.o.abs() + (ray.d * t).abs()) * gamma(3);
+        if boundary_surely_contains(scene, self.boundary, p, p_error, ray.time) {
+            Some(t)
+        } else {
+            None
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Random numbers as a pure function of (seed, pixel, sample, dimension).
+//!
+//! There is no generator whose state must be kept, so a sample is the same whoever computes it, and
+//! whenever. A dimension is a number that belongs to one decision of the path: the decisions at the
+//! camera have the dimensions of [`CameraDim`], those at bounce b the dimensions 8 (b + 1) + i.
+//! Free flights are drawn during traversal, in an order that depends on the tree, so their
+//! dimension is made of the bounce and the medium's index instead.
+
+use crate::math::{lowbias32, pcg4d, unit_f32};
+
+/// Dimensions of the decisions at the camera.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum CameraDim {
+    /// Position in the pixel, x.
+    PixelX,
+    /// Position in the pixel, y.
+    PixelY,
+    /// Position on the lens, first coordinate.
+    LensU,
+    /// Position on the lens, second coordinate.
+    LensV,
+    /// Time in the shutter interval.
+    Time,
+}
+
+/// Dimensions of the decisions at a bounce.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum BounceDim {
+    /// New direction, first coordinate.
+    DirectionU,
+    /// New direction, second coordinate.
+    DirectionV,
+    /// Which of several lobes.
+    Lobe,
+}
+
+/// Number of dimensions that a bounce may use.
+const DIMS_PER_BOUNCE: u32 = 8;
+/// Dimensions from here on belong to free flights.
+const FREE_FLIGHT_DIMS: u32 = 1 << 31;
+
+/// Random numbers of one sample of one pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Sampler {
+    key: [u32; 2],
+    bounce: u32,
+}
+
+impl Sampler {
+    /// Sampler of the sample with this index of the pixel (`x`, `y`).
+    #[inline(always)]
+    #[must_use]
+    pub fn new(seed: u64, x: u32, y: u32, sample: u32) -> Self {
+        // Images are at most 65,536 pixels wide and high, so that a pixel fits one word.
+        let [a, b, c, d] = pcg4d([x | (y << 16), sample, seed as u32, (seed >> 32) as u32]);
+        Self { key: [a ^ c, b ^ d], bounce: 0 }
+    }
+
+    /// Goes on to the next bounce.
+    #[inline(always)]
+    pub fn next_bounce(&mut self) {
+        self.bounce += 1;
+    }
+
+    #[inline(always)]
+    fn draw(&self, dimension: u32) -> f32 {
+        let mixed = lowbias32(dimension.wrapping_mul(0x9e37_79b9) ^ self.key[0]);
+        unit_f32(lowbias32(mixed.wrapping_add(self.key[1])))
+    }
+
+    /// Number in [0, 1) for a decision at the camera.
+    #[inline(always)]
+    #[must_use]
+    pub fn camera(&self, dim: CameraDim) -> f32 {
+        self.draw(dim as u32)
+    }
+
+    /// Number in [0, 1) for a decision at the current bounce.
+    #[inline(always)]
+    #[must_use]
+    pub fn at_bounce(&self, dim: BounceDim) -> f32 {
+        self.draw((self.bounce + 1) * DIMS_PER_BOUNCE + dim as u32)
+    }
+
+    /// Number in [0, 1) for the free flight in the medium with this index, after the current bounce.
+    #[inline(always)]
+    #[must_use]
+    pub fn free_flight(&self, medium: u32) -> f32 {
+        self.draw(FREE_FLIGHT_DIMS | lowbias32(self.bounce ^ lowbias32(medium)))
+    }
+}

@@ -1,0 +1,255 @@
+//! The scene as the renderer sees it: typed arrays in one arena, and handles into them.
+//!
+//! To add an array (for a new shape, material or texture): write its record in its own file, add
+//! one line to [`for_each_scene_array!`](crate::for_each_scene_array), and a kind to the handle that
+//! refers to it. The host's builder, the arena's layout, its bounds check and [`SceneView`] all come
+//! from that one line.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::accessor::Array;
+use crate::camera::Camera;
+use crate::math::{Color, Vec3, lerp};
+
+/// Calls the macro with the name and the record type of every array of the arena. This is the only list.
+#[macro_export]
+macro_rules! for_each_scene_array {
+    ($callback:ident) => {
+        $callback! {
+            /// Binary tree, for the GPU.
+            nodes2: $crate::accel::Node<2>,
+            /// Eight-wide tree, for the processor.
+            nodes8: $crate::accel::Node<8>,
+            /// Spheres that stand still.
+            spheres: $crate::shapes::Sphere,
+            /// Spheres that move on a line.
+            moving_spheres: $crate::shapes::MovingSphere,
+            /// Parallelograms.
+            quads: $crate::shapes::Quad,
+            /// Boxes along the axes.
+            boxes: $crate::shapes::Box3,
+            /// Triangles.
+            triangles: $crate::shapes::Triangle,
+            /// Shapes under an affine map.
+            instances: $crate::shapes::Instance,
+            /// Media of constant density.
+            media: $crate::media::ConstantMedium,
+            /// Diffuse reflectors.
+            lambertians: $crate::materials::Lambertian,
+            /// Fuzzy mirrors.
+            metals: $crate::materials::Metal,
+            /// Clear dielectrics.
+            dielectrics: $crate::materials::Dielectric,
+            /// Isotropic phase functions.
+            isotropics: $crate::materials::Isotropic,
+            /// Emitters.
+            diffuse_lights: $crate::materials::DiffuseLight,
+            /// Checker patterns.
+            checkers: $crate::textures::Checker,
+            /// Noise patterns.
+            noises: $crate::textures::Noise,
+            /// Images.
+            images: $crate::textures::ImageTexture,
+            /// Texels of the images.
+            texels: u32,
+            /// Linear value of each 8-bit sRGB code.
+            srgb_table: f32,
+        }
+    };
+}
+
+/// Where an array lies in the arena.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Span {
+    /// Distance from the start of the arena, in units of 16 bytes.
+    pub offset: u32,
+    /// Number of records.
+    pub len: u32,
+}
+
+macro_rules! define_views {
+    ($($(#[$doc:meta])* $name:ident: $record:ty,)*) => {
+        /// Where each array lies in the arena.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+        #[repr(C)]
+        pub struct Spans {
+            $($(#[$doc])* pub $name: Span,)*
+        }
+
+        /// A scene, borrowed: the same type on the processor and on the GPU.
+        #[derive(Clone, Copy)]
+        pub struct SceneView<'a> {
+            /// Camera, background and limits.
+            pub globals: Globals,
+            $($(#[$doc])* pub $name: Array<'a, $record>,)*
+        }
+    };
+}
+
+crate::for_each_scene_array!(define_views);
+
+/// What there is one of in a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Globals {
+    /// How the picture is taken.
+    pub camera: Camera,
+    /// Radiance of rays that leave the scene.
+    pub background: Background,
+    /// Greatest number of ray segments of a path.
+    pub max_depth: u32,
+    /// Lower half of the seed.
+    pub seed_lo: u32,
+    /// Upper half of the seed.
+    pub seed_hi: u32,
+    /// Nothing.
+    pub _pad: [u32; 3],
+}
+
+const _: () = assert!(size_of::<Globals>().is_multiple_of(16));
+
+impl Globals {
+    /// The seed of all random numbers.
+    #[inline(always)]
+    #[must_use]
+    pub const fn seed(&self) -> u64 {
+        self.seed_lo as u64 | (self.seed_hi as u64) << 32
+    }
+}
+
+/// Radiance by direction: a linear blend in y, constant if both ends are the same.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Background {
+    /// Radiance straight down.
+    pub bottom: Color,
+    /// Radiance straight up.
+    pub top: Color,
+}
+
+impl Background {
+    /// Radiance that comes from the unit direction `d`.
+    #[inline(always)]
+    #[must_use]
+    pub fn radiance(&self, d: Vec3) -> Color {
+        let t = 0.5 * (d.y + 1.0);
+        // A blend of equal ends may be off by rounding, and a constant must be exact.
+        let blend = |a: f32, b: f32| if a == b { a } else { lerp(t, a, b) };
+        Color::new(
+            blend(self.bottom.r, self.top.r),
+            blend(self.bottom.g, self.top.g),
+            blend(self.bottom.b, self.top.b),
+        )
+    }
+}
+
+/// Defines a handle: a kind in the upper four bits and an index in the lower 28.
+macro_rules! tagged_handle {
+    ($(#[$doc:meta])* $name:ident, $kind:ident { $($(#[$kdoc:meta])* $variant:ident = $value:literal,)* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Pod, Zeroable)]
+        #[repr(transparent)]
+        pub struct $name(pub u32);
+
+        #[doc = concat!("What a [`", stringify!($name), "`] refers to.")]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(u32)]
+        pub enum $kind {
+            $($(#[$kdoc])* $variant = $value,)*
+        }
+
+        impl $name {
+            /// Handle of record `index` of its kind.
+            ///
+            /// # Panics
+            /// If `index` does not fit 28 bits.
+            #[must_use]
+            pub const fn new(kind: $kind, index: u32) -> Self {
+                assert!(index < 1 << 28, "more than 2^28 records of one kind");
+                Self((kind as u32) << 28 | index)
+            }
+
+            /// Index into the array of its kind.
+            #[inline(always)]
+            #[must_use]
+            pub const fn index(self) -> u32 {
+                self.0 & 0x0fff_ffff
+            }
+
+            /// Kind, if it is one.
+            #[inline(always)]
+            #[must_use]
+            pub const fn kind(self) -> Option<$kind> {
+                match self.0 >> 28 {
+                    $($value => Some($kind::$variant),)*
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+tagged_handle! {
+    /// Child of a tree: a node, or a primitive.
+    PrimRef, PrimKind {
+        /// Inner node of the tree.
+        Node = 0,
+        /// [`crate::shapes::Sphere`].
+        Sphere = 1,
+        /// [`crate::shapes::MovingSphere`].
+        MovingSphere = 2,
+        /// [`crate::shapes::Quad`].
+        Quad = 3,
+        /// [`crate::shapes::Box3`].
+        Box = 4,
+        /// [`crate::shapes::Triangle`].
+        Triangle = 5,
+        /// [`crate::shapes::Instance`].
+        Instance = 6,
+        /// [`crate::media::ConstantMedium`].
+        Medium = 7,
+    }
+}
+
+impl PrimRef {
+    /// Refers to nothing: the slot of a node that has fewer children than slots, and "no hit".
+    pub const NONE: Self = Self(u32::MAX);
+
+    /// Whether this is an inner node.
+    #[inline(always)]
+    #[must_use]
+    pub const fn is_node(self) -> bool {
+        self.0 < 1 << 28
+    }
+}
+
+tagged_handle! {
+    /// Material of a surface or phase function of a medium.
+    MaterialRef, MaterialKind {
+        /// [`crate::materials::Lambertian`].
+        Lambertian = 1,
+        /// [`crate::materials::Metal`].
+        Metal = 2,
+        /// [`crate::materials::Dielectric`].
+        Dielectric = 3,
+        /// [`crate::materials::Isotropic`].
+        Isotropic = 4,
+        /// [`crate::materials::DiffuseLight`].
+        DiffuseLight = 5,
+    }
+}
+
+tagged_handle! {
+    /// Texture; the solid colour beside it counts if it is `Solid`.
+    TextureRef, TextureKind {
+        /// A colour that does not vary.
+        Solid = 0,
+        /// [`crate::textures::Checker`].
+        Checker = 1,
+        /// [`crate::textures::Noise`].
+        Noise = 2,
+        /// [`crate::textures::ImageTexture`].
+        Image = 3,
+    }
+}

@@ -1,0 +1,184 @@
+//! Shapes: where a ray meets them, and what is there.
+//!
+//! # To add a shape
+//! 1. Write its record and its [`Shape`] in a file of its own here, with tests against `f64`.
+//! 2. Add its array to [`crate::for_each_scene_array!`] and its kind to [`PrimKind`].
+//! 3. Add it to the three `match`es of this file.
+//! 4. On the host: describe it (`zrak-scene`, `desc.rs`), validate it, and lower it.
+//!
+//! # What a hit is
+//! A ray hits a primitive if it passes the slab test of the primitive's bounds *and* the shape's own
+//! intersection; its parameter is then at least the one where it enters the bounds. With that
+//! definition a tree may cull by boxes alone and never changes the picture; see
+//! [`Bounds`].
+
+mod box3;
+mod instance;
+mod quad;
+mod sphere;
+mod triangle;
+
+#[cfg(test)]
+mod tests;
+
+pub use box3::Box3;
+pub use instance::Instance;
+pub use quad::Quad;
+pub use sphere::{MovingSphere, NEEDS_UV, Sphere};
+pub use triangle::Triangle;
+
+use crate::interaction::SurfaceInteraction;
+use crate::math::{Bounds, Vec3, max};
+use crate::ray::Ray;
+use crate::sampler::Sampler;
+use crate::scene::{MaterialRef, PrimKind, PrimRef, SceneView};
+
+/// Shutter interval, in seconds.
+pub type Shutter = [f32; 2];
+
+/// A surface.
+pub trait Shape {
+    /// Box that holds the shape at all times of the shutter interval, with a margin for rounding.
+    fn bounds(&self, shutter: Shutter) -> Bounds;
+
+    /// Parameter of the first intersection ahead of the ray's origin.
+    fn intersect(&self, ray: &Ray) -> Option<f32>;
+
+    /// What is at parameter `t`, which [`Shape::intersect`] returned for the same ray, in the space
+    /// of the ray.
+    fn interaction(&self, ray: &Ray, t: f32) -> SurfaceInteraction;
+}
+
+/// The closed convex volume inside some shapes, which can hold a medium.
+pub trait Convex {
+    /// Part of the ray ahead of its origin that lies inside, if there is one.
+    fn interval(&self, ray: &Ray) -> Option<[f32; 2]>;
+
+    /// Whether `p`, known to within `p_error` in each coordinate, is inside for certain.
+    fn surely_contains(&self, p: Vec3, p_error: Vec3, time: f32) -> bool;
+}
+
+/// Bounds of a primitive; [`Bounds::EMPTY`] for what is none.
+#[must_use]
+pub fn primitive_bounds(scene: &SceneView, prim: PrimRef, shutter: Shutter) -> Bounds {
+    let i = prim.index();
+    match prim.kind() {
+        Some(PrimKind::Sphere) => scene.spheres.get(i).bounds(shutter),
+        Some(PrimKind::MovingSphere) => scene.moving_spheres.get(i).bounds(shutter),
+        Some(PrimKind::Quad) => scene.quads.get(i).bounds(shutter),
+        Some(PrimKind::Box) => scene.boxes.get(i).bounds(shutter),
+        Some(PrimKind::Triangle) => scene.triangles.get(i).bounds(shutter),
+        Some(PrimKind::Instance) => {
+            let instance = scene.instances.get(i);
+            instance.bounds(primitive_bounds(scene, instance.target, shutter))
+        }
+        Some(PrimKind::Medium) => {
+            primitive_bounds(scene, scene.media.get(i).boundary, shutter)
+        }
+        Some(PrimKind::Node) | None => Bounds::EMPTY,
+    }
+}
+
+/// Parameter at which a ray that entered the bounds of `prim` at `t_enter` hits it.
+#[inline(always)]
+#[must_use]
+pub fn intersect_primitive(
+    scene: &SceneView,
+    prim: PrimRef,
+    ray: &Ray,
+    sampler: &Sampler,
+    t_enter: f32,
+) -> Option<f32> {
+    let i = prim.index();
+    let t = match prim.kind() {
+        Some(PrimKind::Sphere) => scene.spheres.get(i).intersect(ray),
+        Some(PrimKind::MovingSphere) => scene.moving_spheres.get(i).intersect(ray),
+        Some(PrimKind::Quad) => scene.quads.get(i).intersect(ray),
+        Some(PrimKind::Box) => scene.boxes.get(i).intersect(ray),
+        Some(PrimKind::Triangle) => scene.triangles.get(i).intersect(ray),
+        Some(PrimKind::Instance) => scene.instances.get(i).intersect(scene, ray),
+        Some(PrimKind::Medium) => scene.media.get(i).intersect(scene, i, ray, sampler, t_enter),
+        Some(PrimKind::Node) | None => None,
+    };
+    t.map(|t| max(t, t_enter))
+}
+
+/// What is at the hit of a ray on the surface `prim`.
+#[inline(always)]
+#[must_use]
+pub fn surface_interaction(
+    scene: &SceneView,
+    prim: PrimRef,
+    ray: &Ray,
+    t: f32,
+) -> SurfaceInteraction {
+    let i = prim.index();
+    match prim.kind() {
+        Some(PrimKind::Sphere) => scene.spheres.get(i).interaction(ray, t),
+        Some(PrimKind::MovingSphere) => scene.moving_spheres.get(i).interaction(ray, t),
+        Some(PrimKind::Quad) => scene.quads.get(i).interaction(ray, t),
+        Some(PrimKind::Box) => scene.boxes.get(i).interaction(ray, t),
+        Some(PrimKind::Triangle) => scene.triangles.get(i).interaction(ray, t),
+        Some(PrimKind::Instance) => scene.instances.get(i).interaction(scene, ray, t),
+        // Not surfaces: never asked for.
+        Some(PrimKind::Medium | PrimKind::Node) | None => SurfaceInteraction {
+            p: ray.at(t),
+            p_error: Vec3::ZERO,
+            n: Vec3::ZERO,
+            uv: [0.0; 2],
+            material: MaterialRef::default(),
+        },
+    }
+}
+
+/// Part of the ray inside the boundary of a medium; see [`Convex`].
+#[inline(always)]
+#[must_use]
+pub fn boundary_interval(scene: &SceneView, boundary: PrimRef, ray: &Ray) -> Option<[f32; 2]> {
+    let simple = |prim: PrimRef, ray: &Ray| {
+        let i = prim.index();
+        match prim.kind() {
+            Some(PrimKind::Sphere) => scene.spheres.get(i).interval(ray),
+            Some(PrimKind::MovingSphere) => scene.moving_spheres.get(i).interval(ray),
+            Some(PrimKind::Box) => scene.boxes.get(i).interval(ray),
+            _ => None,
+        }
+    };
+    if boundary.kind() == Some(PrimKind::Instance) {
+        let instance = scene.instances.get(boundary.index());
+        simple(instance.target, &instance.object_ray(ray))
+    } else {
+        simple(boundary, ray)
+    }
+}
+
+/// Whether a world-space point is certainly inside the boundary of a medium; see [`Convex`].
+#[inline(always)]
+#[must_use]
+pub fn boundary_surely_contains(
+    scene: &SceneView,
+    boundary: PrimRef,
+    p: Vec3,
+    p_error: Vec3,
+    time: f32,
+) -> bool {
+    let simple = |prim: PrimRef, p: Vec3, p_error: Vec3| {
+        let i = prim.index();
+        match prim.kind() {
+            Some(PrimKind::Sphere) => scene.spheres.get(i).surely_contains(p, p_error, time),
+            Some(PrimKind::MovingSphere) => {
+                scene.moving_spheres.get(i).surely_contains(p, p_error, time)
+            }
+            Some(PrimKind::Box) => scene.boxes.get(i).surely_contains(p, p_error, time),
+            _ => false,
+        }
+    };
+    if boundary.kind() == Some(PrimKind::Instance) {
+        let instance = scene.instances.get(boundary.index());
+        let to_object = &instance.object_from_world;
+        let error = to_object.abs_vector(p_error) + to_object.point_rounding(p);
+        simple(instance.target, to_object.point(p), error)
+    } else {
+        simple(boundary, p, p_error)
+    }
+}

@@ -1,0 +1,56 @@
+//! Textures: a colour for every point of a surface or of space.
+//!
+//! # To add a texture
+//! 1. Write its record and its evaluation in a file of its own here, with tests.
+//! 2. Add its array to [`crate::for_each_scene_array!`] and its kind to [`TextureKind`].
+//! 3. Add it to the `match` of [`ColorInput::evaluate`].
+//! 4. On the host: describe it (`zrak-scene`, `desc.rs`), validate it, and lower it.
+
+mod checker;
+mod image;
+mod noise;
+mod perlin;
+
+#[cfg(test)]
+mod tests;
+
+pub use checker::Checker;
+pub use image::{ImageTexture, TEXELS_LINEAR, TEXELS_SRGB8};
+pub use noise::{Noise, PATTERN_MARBLE, PATTERN_NOISE, PATTERN_TURBULENCE};
+pub use perlin::{perlin, turbulence};
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::math::{Color, Vec3};
+use crate::scene::{SceneView, TextureKind, TextureRef};
+
+/// A colour that may vary: solid, or a texture.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct ColorInput {
+    /// The colour, if the texture is [`TextureKind::Solid`].
+    pub solid: Color,
+    /// The texture.
+    pub texture: TextureRef,
+}
+
+const _: () = assert!(size_of::<ColorInput>() == 16);
+
+impl ColorInput {
+    /// Colour at the world-space point `p` with texture coordinates `uv`.
+    #[inline(always)]
+    #[must_use]
+    pub fn evaluate(&self, scene: &SceneView, p: Vec3, uv: [f32; 2]) -> Color {
+        let mut input = *self;
+        // Checkers lead to other textures; the host made sure that they do not lead in a circle.
+        loop {
+            let i = input.texture.index();
+            match input.texture.kind() {
+                Some(TextureKind::Checker) => input = scene.checkers.get(i).pick(p),
+                Some(TextureKind::Noise) => return scene.noises.get(i).evaluate(p),
+                Some(TextureKind::Image) => return scene.images.get(i).evaluate(scene, uv),
+                Some(TextureKind::Solid) | None => return input.solid,
+            }
+        }
+    }
+}
