@@ -177,7 +177,8 @@ pub enum TextureDesc {
     },
     /// A picture, looked up at (u, v).
     Image {
-        /// PNG, JPEG, Radiance HDR or OpenEXR, relative to the scene file.
+        /// PNG, JPEG, Radiance HDR or OpenEXR file, relative to the scene file; `builtin:NAME` is a
+        /// picture inside zrak (`builtin:earth.png`).
         path: String,
         /// How texels are combined.
         #[serde(default)]
@@ -339,7 +340,7 @@ pub enum ObjectDesc {
     },
     /// Medium of constant density inside a closed convex boundary.
     Medium {
-        /// Sphere or box; its material has no say and may be left out.
+        /// Sphere or box, without a material.
         boundary: BoundaryDesc,
         /// Extinction coefficient: mean number of collisions per world unit.
         density: f64,
