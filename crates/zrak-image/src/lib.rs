@@ -25,7 +25,7 @@ mod picture;
 mod srgb;
 
 pub use compare::{Comparison, compare};
-pub use decode::{Limits, Texels, TextureImage, read_picture, read_texture};
+pub use decode::{Limits, Texels, TextureImage, decode_texture, read_picture, read_texture};
 pub use encode::{Transfer, check_writable, encode, replace_file, write};
 pub use error::{Error, ErrorKind};
 pub use format::Format;

@@ -1,1 +1,16 @@
-//! zrak-render
+//! What all backends share: the interface, the film, and the progressive loop.
+
+mod backend;
+mod error;
+mod film;
+mod progressive;
+mod region;
+
+#[cfg(test)]
+mod tests;
+
+pub use backend::{Backend, BackendInfo, Control, Times};
+pub use error::{BackendError, BackendErrorKind};
+pub use film::Film;
+pub use progressive::{Interrupted, Rendered, render};
+pub use region::{Region, SampleRange};

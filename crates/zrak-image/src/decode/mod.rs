@@ -112,7 +112,12 @@ pub fn read_picture(path: &Path) -> Result<Picture, Error> {
 /// PNG and JPEG are sRGB, the others linear sRGB. A texel of a float format that is negative,
 /// infinite or NaN is an error that names it, since it would spread over the render.
 pub fn read_texture(path: &Path, limits: &Limits) -> Result<TextureImage, Error> {
-    let image = read(path, limits)?;
+    decode_texture(&read_bytes(path, limits)?, path, limits)
+}
+
+/// As [`read_texture`], for bytes in memory; `path` is what errors call them.
+pub fn decode_texture(bytes: &[u8], path: &Path, limits: &Limits) -> Result<TextureImage, Error> {
+    let image = decode(bytes, limits).map_err(|fault| fault.at(path))?;
     if let Texels::Linear(texels) = &image.texels {
         check_texels(image.width, texels).map_err(|fault| fault.at(path))?;
     }

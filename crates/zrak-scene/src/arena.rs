@@ -1,0 +1,137 @@
+//! The arena: one contiguous buffer with everything that a render reads.
+//!
+//! [`SceneArrays`] is filled by the lowering, [`SceneArena::pack`] lays it out, and backends render
+//! from a [`SceneView`] of it; the GPU gets it in one copy. Every handle in it is checked when it is
+//! packed, because the GPU does not.
+
+mod check;
+
+use bytemuck::{Pod, Zeroable};
+use zrak_core::accessor::Array;
+use zrak_core::for_each_scene_array;
+use zrak_core::scene::{Globals, SceneView, Span, Spans};
+
+pub use check::Corrupt;
+
+/// What the arena's start and its arrays are aligned to.
+pub const ARENA_ALIGNMENT: usize = 256;
+/// Unit of [`Span::offset`].
+const OFFSET_UNIT: usize = 16;
+
+/// Piece of an arena: gives the buffer its alignment.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C, align(256))]
+struct Chunk([u8; ARENA_ALIGNMENT]);
+
+macro_rules! define_arrays {
+    ($($(#[$doc:meta])* $name:ident: $record:ty,)*) => {
+        /// The arrays of a scene while it is being built.
+        #[derive(Clone, Debug, Default)]
+        pub struct SceneArrays {
+            $($(#[$doc])* pub $name: Vec<$record>,)*
+        }
+
+        impl SceneArrays {
+            /// The scene as it stands.
+            #[must_use]
+            pub fn view(&self, globals: Globals) -> SceneView<'_> {
+                SceneView { globals, $($name: Array::new(&self.$name),)* }
+            }
+
+            /// Where each array will lie, and the size of all of them in bytes.
+            fn layout(&self) -> (Spans, usize) {
+                let mut end = 0_usize;
+                let spans = Spans {
+                    $($name: {
+                        let offset = end;
+                        end += size_of_val(self.$name.as_slice());
+                        end = end.next_multiple_of(ARENA_ALIGNMENT);
+                        Span { offset: (offset / OFFSET_UNIT) as u32, len: self.$name.len() as u32 }
+                    },)*
+                };
+                (spans, end)
+            }
+
+            fn copy_into(&self, spans: &Spans, bytes: &mut [u8]) {
+                $({
+                    let source: &[u8] = bytemuck::cast_slice(&self.$name);
+                    let start = spans.$name.offset as usize * OFFSET_UNIT;
+                    bytes[start..start + source.len()].copy_from_slice(source);
+                })*
+            }
+        }
+
+        impl SceneArena {
+            /// The scene, borrowed.
+            #[must_use]
+            pub fn view(&self) -> SceneView<'_> {
+                let bytes = self.bytes();
+                SceneView {
+                    globals: self.globals,
+                    $($name: {
+                        let span = self.spans.$name;
+                        let start = span.offset as usize * OFFSET_UNIT;
+                        let size = span.len as usize * size_of::<$record>();
+                        let records: &[$record] = bytemuck::cast_slice(&bytes[start..start + size]);
+                        Array::new(records)
+                    },)*
+                }
+            }
+
+            /// Bytes of each array, by name.
+            #[must_use]
+            pub fn sizes(&self) -> Vec<(&'static str, usize)> {
+                vec![$((
+                    stringify!($name),
+                    self.spans.$name.len as usize * size_of::<$record>(),
+                ),)*]
+            }
+        }
+    };
+}
+
+for_each_scene_array!(define_arrays);
+
+/// A scene ready to render.
+#[derive(Clone)]
+pub struct SceneArena {
+    globals: Globals,
+    spans: Spans,
+    chunks: Vec<Chunk>,
+}
+
+impl SceneArena {
+    /// Lays out the arrays in one buffer and checks every handle in them.
+    ///
+    /// # Errors
+    /// If a handle leads out of bounds, or the arrays are larger than an arena can be (64 GiB).
+    pub fn pack(globals: Globals, arrays: &SceneArrays) -> Result<Self, Corrupt> {
+        let (spans, size) = arrays.layout();
+        if size > u32::MAX as usize * OFFSET_UNIT {
+            return Err(Corrupt::new(format!("{size} bytes are more than an arena can hold")));
+        }
+        let mut chunks = vec![Chunk::zeroed(); size / ARENA_ALIGNMENT];
+        arrays.copy_into(&spans, bytemuck::cast_slice_mut(&mut chunks));
+        let arena = Self { globals, spans, chunks };
+        check::check(&arena.view())?;
+        Ok(arena)
+    }
+
+    /// What there is one of in the scene.
+    #[must_use]
+    pub const fn globals(&self) -> &Globals {
+        &self.globals
+    }
+
+    /// Where the arrays lie.
+    #[must_use]
+    pub const fn spans(&self) -> &Spans {
+        &self.spans
+    }
+
+    /// The whole buffer, aligned to [`ARENA_ALIGNMENT`].
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        bytemuck::cast_slice(&self.chunks)
+    }
+}
