@@ -2,5 +2,9 @@
 
 pub mod builtin;
 pub mod desc;
+pub mod error;
+pub mod file;
+pub mod schema;
+pub mod validate;
 
 mod suggest;
