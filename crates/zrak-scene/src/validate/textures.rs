@@ -105,7 +105,8 @@ fn nesting(checker: &mut Checker<'_>, root: &str) {
         level = next;
     }
     if !level.is_empty() {
-        let message = format!("textures are nested more than {TEXTURE_NESTING_MAX} deep");
+        let message =
+            format!("textures are nested more than {TEXTURE_NESTING_MAX} deep, or in a circle");
         checker.note("", message, None);
     }
 }
