@@ -3,6 +3,10 @@
 pub mod arena;
 pub mod builtin;
 pub mod desc;
+pub mod error;
+pub mod file;
 pub mod lower;
+pub mod schema;
+pub mod validate;
 
 mod suggest;

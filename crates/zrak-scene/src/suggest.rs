@@ -10,7 +10,10 @@ pub(crate) fn closest<'a>(
         .into_iter()
         .map(|candidate| {
             let chars: Vec<char> = candidate.to_lowercase().chars().take(MAX_CHARS).collect();
-            (distance(&wanted, &chars), chars.len().max(wanted.len()), candidate)
+            // Leaving off the end, such as `_deg`, is one slip.
+            let is_beginning = wanted.len() >= 4 && chars.starts_with(&wanted);
+            let distance = if is_beginning { 1 } else { distance(&wanted, &chars) };
+            (distance, chars.len().max(wanted.len()), candidate)
         })
         // One slip in three letters is a slip; more is another word.
         .filter(|&(distance, len, _)| distance <= (len / 3).max(1) && distance < len)
@@ -18,14 +21,23 @@ pub(crate) fn closest<'a>(
         .map(|(_, _, candidate)| candidate)
 }
 
-/// `` `a` ``, `` `a` or `b` ``, `` `a`, `b` or `c` ``; long lists end with how many were left out.
-pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+/// `` `a`, `b` or `c` ``: one of these is expected.
+pub(crate) fn list_any<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    list(names, "or")
+}
+
+/// `` `a`, `b` and `c` ``: these are all there are.
+pub(crate) fn list_all<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    list(names, "and")
+}
+
+fn list<'a>(names: impl IntoIterator<Item = &'a str>, conjunction: &str) -> String {
     let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
     match names.as_slice() {
         [] => "nothing".to_owned(),
         [one] => one.clone(),
         [first @ .., last] if names.len() <= MAX_LISTED => {
-            format!("{} or {last}", first.join(", "))
+            format!("{} {conjunction} {last}", first.join(", "))
         }
         _ => format!("{} and {} more", names[..MAX_LISTED].join(", "), names.len() - MAX_LISTED),
     }
@@ -60,7 +72,7 @@ fn distance(a: &[char], b: &[char]) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{closest, distance, list};
+    use super::{closest, distance, list_all, list_any};
 
     #[test]
     fn distances() {
@@ -80,13 +92,16 @@ mod tests {
     fn only_near_names_are_suggested() {
         assert_eq!(closest("radus", ["center", "radius"]), Some("radius"));
         assert_eq!(closest("grond", ["ground", "round"]), Some("ground"));
+        assert_eq!(closest("rotate_y", ["rotate", "rotate_y_deg"]), Some("rotate_y_deg"));
         assert_eq!(closest("x", ["y"]), None);
         assert_eq!(closest("teapot", ["sphere", "box"]), None);
     }
 
     #[test]
     fn lists_read_well() {
-        assert_eq!(list(["a"]), "`a`");
-        assert_eq!(list(["a", "b", "c"]), "`a`, `b` or `c`");
+        assert_eq!(list_any(["a"]), "`a`");
+        assert_eq!(list_any(["a", "b", "c"]), "`a`, `b` or `c`");
+        assert_eq!(list_all(["a", "b"]), "`a` and `b`");
+        assert!(list_all(["a"; 20]).ends_with("`a` and 8 more"));
     }
 }

@@ -1,0 +1,5 @@
+//! Errors at their places; reading what was written; nothing panics.
+
+mod errors;
+mod hostile;
+mod roundtrip;
