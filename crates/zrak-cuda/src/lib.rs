@@ -1,1 +1,7 @@
-//! zrak-cuda
+//! The NVIDIA backend: the committed kernels, on the CUDA driver, which is loaded at run time.
+
+mod backend;
+mod device;
+
+pub use backend::{CudaBackend, CudaOptions};
+pub use device::{DeviceInfo, devices};
