@@ -80,25 +80,38 @@ impl<'a, T: Pod> Array<'a, T> {
     }
 }
 
-/// Stack of at most `N` entries whose memory is not written before it is used: clearing it would
-/// cost the GPU a loop over local memory for each ray.
-pub struct Stack<T: Copy, const N: usize> {
-    entries: [MaybeUninit<T>; N],
-    len: usize,
-}
+/// Memory for a [`Stack`]. It is not written before it is used: clearing it would cost the GPU a
+/// loop over local memory for each ray.
+pub struct StackMemory<T: Copy, const N: usize>([MaybeUninit<T>; N]);
 
-impl<T: Copy, const N: usize> Default for Stack<T, N> {
+impl<T: Copy, const N: usize> Default for StackMemory<T, N> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<T: Copy, const N: usize> Stack<T, N> {
+impl<T: Copy, const N: usize> StackMemory<T, N> {
+    /// Memory for `N` entries.
+    #[inline(always)]
+    #[must_use]
+    pub const fn new() -> Self {
+        Self([const { MaybeUninit::uninit() }; N])
+    }
+}
+
+/// Stack of at most `N` entries. It is apart from its memory so that its length stays in a
+/// register.
+pub struct Stack<'a, T: Copy, const N: usize> {
+    entries: &'a mut [MaybeUninit<T>; N],
+    len: u32,
+}
+
+impl<'a, T: Copy, const N: usize> Stack<'a, T, N> {
     /// Stack with no entry.
     #[inline(always)]
     #[must_use]
-    pub fn new() -> Self {
-        Self { entries: [const { MaybeUninit::uninit() }; N], len: 0 }
+    pub const fn new(memory: &'a mut StackMemory<T, N>) -> Self {
+        Self { entries: &mut memory.0, len: 0 }
     }
 
     /// Puts an entry on top. Builders bound the depth of their trees so that it fits; see
@@ -109,10 +122,10 @@ impl<T: Copy, const N: usize> Stack<T, N> {
     #[inline(always)]
     pub fn push(&mut self, entry: T) {
         #[cfg(not(target_arch = "nvptx64"))]
-        assert!(self.len < N, "traversal stack overflow");
+        assert!((self.len as usize) < N, "traversal stack overflow");
         // SAFETY: in bounds: just checked on the processor; on the GPU by the bound on the tree's
         // depth that the host checked.
-        unsafe { self.entries.get_unchecked_mut(self.len).write(entry) };
+        unsafe { self.entries.get_unchecked_mut(self.len as usize).write(entry) };
         self.len += 1;
     }
 
@@ -124,7 +137,7 @@ impl<T: Copy, const N: usize> Stack<T, N> {
         }
         self.len -= 1;
         // SAFETY: entries below `len` were written by `push`, and `len` was above 0.
-        Some(unsafe { self.entries.get_unchecked(self.len).assume_init_read() })
+        Some(unsafe { self.entries.get_unchecked(self.len as usize).assume_init_read() })
     }
 }
 

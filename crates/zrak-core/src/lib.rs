@@ -21,6 +21,7 @@ pub mod camera;
 pub mod film;
 pub mod integrators;
 pub mod interaction;
+pub mod launch;
 pub mod materials;
 pub mod math;
 pub mod media;

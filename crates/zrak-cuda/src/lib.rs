@@ -2,6 +2,8 @@
 
 mod backend;
 mod device;
+mod driver;
+mod kernels;
 
 pub use backend::{CudaBackend, CudaOptions};
 pub use device::{DeviceInfo, devices};

@@ -6,7 +6,7 @@
 //! makes anyway.
 
 use super::{Accel, NO_HIT, found, keep_closer};
-use crate::accessor::{Array, Stack};
+use crate::accessor::{Array, Stack, StackMemory};
 use crate::interaction::Hit;
 use crate::math::{SLAB_SLACK, max, min, reciprocal_or_huge};
 use crate::ray::Ray;
@@ -64,7 +64,8 @@ impl<const N: usize, const S: usize> Accel for Bvh<'_, N, S> {
     #[inline(always)]
     fn closest_hit(&self, scene: &SceneView, ray: &Ray, sampler: &Sampler) -> Option<Hit> {
         let inv_d = ray.d.map(reciprocal_or_huge);
-        let mut stack = Stack::<Entry, S>::new();
+        let mut memory = StackMemory::<Entry, S>::new();
+        let mut stack = Stack::new(&mut memory);
         let mut best = NO_HIT;
         let mut current: Entry = (0.0, PrimRef(0));
         loop {
@@ -106,7 +107,7 @@ impl<const N: usize, const S: usize> Accel for Bvh<'_, N, S> {
 
 /// Takes the next entry that can still hold a closer hit.
 #[inline(always)]
-fn pop<const S: usize>(stack: &mut Stack<Entry, S>, t_best: f32) -> Option<Entry> {
+fn pop<const S: usize>(stack: &mut Stack<'_, Entry, S>, t_best: f32) -> Option<Entry> {
     loop {
         let entry = stack.pop()?;
         // An equally close one with a smaller handle would count.
@@ -122,7 +123,7 @@ fn next_child<const N: usize, const S: usize>(
     node: &Node<N>,
     enter: &[f32; N],
     leave: &[f32; N],
-    stack: &mut Stack<Entry, S>,
+    stack: &mut Stack<'_, Entry, S>,
 ) -> Option<Entry> {
     if N == 2 {
         let first = (enter[0], node.children[0]);

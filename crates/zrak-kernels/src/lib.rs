@@ -1,0 +1,53 @@
+//! Entry points on the GPU: find out which pixel, check that it exists, call the core, store.
+//!
+//! Nothing here decides what a sample is; that is `zrak_core`, the same source as on the processor.
+
+#![no_std]
+#![feature(abi_ptx, stdarch_nvptx, core_intrinsics)]
+#![allow(internal_features)]
+
+use core::arch::nvptx::{
+    _block_dim_x, _block_dim_y, _block_idx_x, _block_idx_y, _thread_idx_x, _thread_idx_y,
+};
+
+use zrak_core::accel::Bvh2;
+use zrak_core::film::PixelSum;
+use zrak_core::integrators::render_pixel;
+use zrak_core::launch::RenderParams;
+use zrak_core::scene::SceneView;
+
+/// Adds samples to the film: one thread for each pixel of the region.
+///
+/// # Safety
+/// `arena` and `params` are those of a checked arena in device memory; `film` points to the
+/// `params.width * params.height` pixels of the region.
+#[unsafe(no_mangle)]
+pub unsafe extern "ptx-kernel" fn render_naive(
+    arena: *const u8,
+    film: *mut PixelSum,
+    params: RenderParams,
+) {
+    // SAFETY: these only read special registers.
+    let (i, j) = unsafe {
+        (
+            _block_idx_x() as u32 * _block_dim_x() as u32 + _thread_idx_x() as u32,
+            _block_idx_y() as u32 * _block_dim_y() as u32 + _thread_idx_y() as u32,
+        )
+    };
+    if i >= params.width || j >= params.height {
+        return;
+    }
+    // SAFETY: by this function's contract.
+    let scene = unsafe { SceneView::from_raw(arena, params.globals, &params.spans) };
+    let accel = Bvh2 { nodes: scene.nodes2 };
+    let (x, y) = (params.x + i, params.y + j);
+    let sum = render_pixel(&scene, accel, x, y, params.first_sample, params.n_samples);
+    // SAFETY: the pixel is inside the region, and no other thread has it.
+    unsafe { (*film.add((j * params.width + i) as usize)).merge(&sum) };
+}
+
+/// Required without `std`; the core cannot fail, so nothing ever calls it.
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! {
+    core::intrinsics::abort()
+}
