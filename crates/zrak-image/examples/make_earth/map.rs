@@ -77,7 +77,9 @@ pub(crate) fn draw() -> Picture {
     // How much land there is around: what makes a shelf.
     let near = blur(&coverage, 5);
     let far = blur(&near, 14);
-    let relief: Vec<f64> = (0..WIDTH * HEIGHT).map(|i| relief(at(i).0, at(i).1)).collect();
+    // Nothing of the open sea's height is seen.
+    let height = |i: usize| if near[i] > 0.0 { relief(at(i).0, at(i).1) } else { 0.0 };
+    let relief: Vec<f64> = (0..WIDTH * HEIGHT).map(height).collect();
 
     let table = srgb8_to_linear_table();
     let pixels = (0..WIDTH * HEIGHT).map(|i| {
@@ -145,24 +147,22 @@ fn fill(mask: &mut [bool], ring: Ring, value: bool) {
 
 /// The share of land in each pixel, after the coast is roughened by moving samples with noise.
 fn coverage(mask: &[bool]) -> Vec<f64> {
-    let (width, height) = (WIDTH * FINE, HEIGHT * FINE);
-    let mut coverage = vec![0.0; WIDTH * HEIGHT];
-    for y in 0..height {
-        let lat = 90.0 - (y as f64 + 0.5) / height as f64 * 180.0;
+    let (width, height) = ((WIDTH * FINE) as f64, (HEIGHT * FINE) as f64);
+    let share_of_land = |pixel_idx: usize| {
+        let (lon, lat) = at(pixel_idx);
         // Towards the poles a degree of longitude shrinks, and the shift grows with it.
         let stretch = 1.0 / libm::cos(lat * PI / 180.0).max(0.1);
-        for x in 0..width {
-            let lon = (x as f64 + 0.5) / width as f64 * 360.0 - 180.0;
-            let dx = 15.0 * stretch * noise(lon, lat, 38.0, 3);
-            let dy = 15.0 * noise(lon, lat, 41.0, 3);
-            let from_x = (x as f64 + dx).rem_euclid(width as f64) as usize % width;
-            let from_y = (y as f64 + dy).clamp(0.0, height as f64 - 1.0) as usize;
-            if mask[from_y * width + from_x] {
-                coverage[y / FINE * WIDTH + x / FINE] += 1.0 / (FINE * FINE) as f64;
-            }
-        }
-    }
-    coverage
+        let dx = 15.0 * stretch * noise(lon, lat, 38.0, 4);
+        let dy = 15.0 * noise(lon, lat, 41.0, 4);
+        let n_land = (0..FINE * FINE).filter(|sample| {
+            let x = (pixel_idx % WIDTH * FINE + sample % FINE) as f64 + dx;
+            let y = (pixel_idx / WIDTH * FINE + sample / FINE) as f64 + dy;
+            let x = x.rem_euclid(width) as usize % (WIDTH * FINE);
+            mask[y.clamp(0.0, height - 1.0) as usize * WIDTH * FINE + x]
+        });
+        n_land.count() as f64 / (FINE * FINE) as f64
+    };
+    (0..WIDTH * HEIGHT).map(share_of_land).collect()
 }
 
 /// Two box blurs over `2 * radius + 1` pixels, across the map's seam but not its poles.
@@ -242,7 +242,8 @@ fn land_colour(lon: f64, lat: f64, height: f64, slope: f64) -> Colour {
     colour = mix(colour, mix(SAVANNA, DESERT, 0.35), 0.7 * steppe);
     let covered = |regions: &[Region]| {
         let strongest = regions.iter().map(|&r| region(lon, lat, r)).fold(0.0, f64::max);
-        step(strongest + 0.9 * ragged, 0.18, 0.5)
+        // Only the rim is ragged: no holes within, and no patches far away.
+        step(strongest + 2.4 * ragged * strongest * (1.0 - strongest), 0.18, 0.45)
     };
     colour = mix(colour, RAINFOREST, covered(RAINFORESTS));
     colour = mix(colour, DESERT, covered(DESERTS));
