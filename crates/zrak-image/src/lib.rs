@@ -1,8 +1,8 @@
 //! Pictures for zrak: textures in, renders out, and their comparison.
 //!
 //! A [`Picture`] is what a render yields: linear sRGB radiance, three `f32` per pixel.
-//! [`write`] puts it into a PNG, JPEG, Radiance HDR, OpenEXR or PFM file, [`read_picture`] reads
-//! it back and [`compare`] says how two of them differ. [`read_texture`] reads the same formats
+//! [`write()`] puts it into a PNG, JPEG, Radiance HDR, OpenEXR or PFM file, [`read_picture`] reads
+//! it back and [`compare()`] says how two of them differ. [`read_texture`] reads the same formats
 //! for a scene, within [`Limits`], and keeps 8-bit texels as they are.
 //!
 //! Three promises hold for all formats:

@@ -17,7 +17,7 @@ pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     replace_with(path, |file| file.write_all(bytes))
 }
 
-/// Fails if [`write`](crate::write) to `path` would: to be called before a long render.
+/// Fails if [`write`](crate::write()) to `path` would: to be called before a long render.
 ///
 /// Checks that the extension names a format, that `path` is or may become a file, and that its
 /// folder exists and takes a new file, which is created and removed.
