@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 use std::fmt;
-use std::io;
 use std::ops::Range;
 
 use annotate_snippets::renderer::DecorStyle;
@@ -21,7 +20,6 @@ struct Inner {
     diagnostics: Vec<Diagnostic>,
     n_problems: usize,
     origin: String,
-    io: Option<io::Error>,
 }
 
 /// What sort of error it is.
@@ -62,6 +60,9 @@ struct Place {
 /// More problems than this are counted, not shown.
 const SHOWN_MAX: usize = 10;
 
+/// A longer message, in bytes, is cut.
+const TITLE_MAX: usize = 500;
+
 /// A longer line, in bytes, is not shown.
 const LINE_MAX: usize = 4096;
 
@@ -72,11 +73,10 @@ impl SceneError {
         origin: &str,
         message: String,
         help: Option<&str>,
-        io: Option<io::Error>,
     ) -> Self {
         let problem = Problem { path: KeyPath::default(), message, help: help.map(str::to_owned) };
         let diagnostics = vec![Diagnostic { problem, place: None }];
-        Self(Box::new(Inner { kind, diagnostics, n_problems: 1, origin: origin.to_owned(), io }))
+        Self(Box::new(Inner { kind, diagnostics, n_problems: 1, origin: origin.to_owned() }))
     }
 
     /// Problems, at least one, of the text of the file `origin`, each with its span in bytes. They
@@ -95,7 +95,7 @@ impl SceneError {
             .map(|(problem, span)| Diagnostic { problem, place: Some(Place::new(text, span)) })
             .collect();
         let origin = origin.to_owned();
-        Self(Box::new(Inner { kind, diagnostics, n_problems, origin, io: None }))
+        Self(Box::new(Inner { kind, diagnostics, n_problems, origin }))
     }
 
     /// What sort of error it is.
@@ -151,7 +151,8 @@ impl Diagnostic {
             Some(place) => {
                 let mut annotation = AnnotationKind::Primary.span(place.span.clone());
                 if !self.problem.path.0.is_empty() {
-                    annotation = annotation.label(self.problem.path.to_string());
+                    let path = self.problem.path.to_string();
+                    annotation = annotation.label(one_line(&path).into_owned());
                 }
                 let snippet = Snippet::source(place.text.as_str())
                     .line_start(place.line)
@@ -167,9 +168,10 @@ impl Diagnostic {
     }
 }
 
-/// `text` with its control characters written out, so that it cannot disturb a terminal.
+/// `text` with its control characters written out, so that it cannot disturb a terminal, and cut
+/// where it gets too long.
 fn one_line(text: &str) -> Cow<'_, str> {
-    if !text.contains(char::is_control) {
+    if text.len() <= TITLE_MAX && !text.contains(char::is_control) {
         return Cow::Borrowed(text);
     }
     let mut clean = String::new();
@@ -178,6 +180,10 @@ fn one_line(text: &str) -> Cow<'_, str> {
             clean.extend(c.escape_default());
         } else {
             clean.push(c);
+        }
+        if clean.len() > TITLE_MAX {
+            clean.push_str("...");
+            break;
         }
     }
     Cow::Owned(clean)
@@ -225,8 +231,4 @@ impl fmt::Debug for SceneError {
     }
 }
 
-impl std::error::Error for SceneError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        self.0.io.as_ref().map(|io| io as _)
-    }
-}
+impl std::error::Error for SceneError {}

@@ -19,3 +19,16 @@ pub(crate) fn root() -> &'static Value {
     static ROOT: OnceLock<Value> = OnceLock::new();
     ROOT.get_or_init(|| schemars::schema_for!(SceneDesc).to_value())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{json_schema, root};
+
+    #[test]
+    fn says_what_fields_mean() {
+        let schema = json_schema();
+        assert!(schema.contains("Centre of the lens"));
+        assert!(schema.ends_with("}\n"));
+        assert_eq!(root()["required"], serde_json::json!(["format", "name", "camera"]));
+    }
+}

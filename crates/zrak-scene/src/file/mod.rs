@@ -54,13 +54,7 @@ impl Source {
     /// An error that shows `problems`, at least one, at their places in the text: for what is found
     /// wrong with a scene after it was read, such as an image that is missing.
     pub fn error(&self, problems: Vec<Problem>) -> SceneError {
-        let (tree, _) = DeTable::parse_recoverable(&self.text);
-        let locate = |problem: Problem| {
-            let span = spans::find(&tree, &problem.path);
-            (problem, span)
-        };
-        let located = problems.into_iter().map(locate).collect();
-        SceneError::text(SceneErrorKind::Invalid, &self.origin, &self.text, located)
+        locate(&self.origin, &self.text, problems)
     }
 }
 
@@ -68,26 +62,33 @@ impl Source {
 pub fn read(path: impl AsRef<Path>) -> Result<LoadedScene, SceneError> {
     let path = path.as_ref();
     let source = Source { origin: path.display().to_string(), text: read_text(path)? };
-    let desc = parse_source(&source)?;
+    let desc = parse(&source.text, &source.origin)?;
     let base_dir = path.parent().unwrap_or(Path::new("")).to_owned();
     Ok(LoadedScene { desc, base_dir, source })
 }
 
 /// Reads a scene from a text; `origin` is what errors call it.
-pub fn parse(text: &str, origin: impl Into<String>) -> Result<SceneDesc, SceneError> {
-    parse_source(&Source { origin: origin.into(), text: text.to_owned() })
+pub fn parse(text: &str, origin: &str) -> Result<SceneDesc, SceneError> {
+    let tree = parse_tree(text, origin)?;
+    let desc = to_desc(tree, text, origin)?;
+    let problems = validate(&desc);
+    if problems.is_empty() { Ok(desc) } else { Err(locate(origin, text, problems)) }
 }
 
-fn parse_source(source: &Source) -> Result<SceneDesc, SceneError> {
-    let tree = parse_tree(source)?;
-    let desc = to_desc(source, tree)?;
-    let problems = validate(&desc);
-    if problems.is_empty() { Ok(desc) } else { Err(source.error(problems)) }
+/// An error that shows problems of a description in the text it came from.
+fn locate(origin: &str, text: &str, problems: Vec<Problem>) -> SceneError {
+    let (tree, _) = DeTable::parse_recoverable(text);
+    let with_span = |problem: Problem| {
+        let span = spans::find(&tree, &problem.path);
+        (problem, span)
+    };
+    let located = problems.into_iter().map(with_span).collect();
+    SceneError::text(SceneErrorKind::Invalid, origin, text, located)
 }
 
 /// Text to tree: syntax.
-fn parse_tree(source: &Source) -> Result<Spanned<DeTable<'_>>, SceneError> {
-    let (tree, errors) = DeTable::parse_recoverable(&source.text);
+fn parse_tree<'a>(text: &'a str, origin: &str) -> Result<Spanned<DeTable<'a>>, SceneError> {
+    let (tree, errors) = DeTable::parse_recoverable(text);
     let place = |error: &toml::de::Error| error.span().unwrap_or(0..0);
     // One slip makes the parser stumble over much that follows: only the first is worth showing.
     let Some(first) = errors.into_iter().min_by_key(|error| place(error).start) else {
@@ -103,13 +104,13 @@ fn parse_tree(source: &Source) -> Result<Spanned<DeTable<'_>>, SceneError> {
     };
     let problem = Problem { path: KeyPath::default(), message, help };
     let problems = vec![(problem, span)];
-    Err(SceneError::text(SceneErrorKind::Syntax, &source.origin, &source.text, problems))
+    Err(SceneError::text(SceneErrorKind::Syntax, origin, text, problems))
 }
 
 /// Tree to description: version, shape, types.
-fn to_desc(source: &Source, tree: Spanned<DeTable<'_>>) -> Result<SceneDesc, SceneError> {
+fn to_desc(tree: Spanned<DeTable<'_>>, text: &str, origin: &str) -> Result<SceneDesc, SceneError> {
     let error = |kind, problems: Vec<(Problem, Range<usize>)>| {
-        SceneError::text(kind, &source.origin, &source.text, problems)
+        SceneError::text(kind, origin, text, problems)
     };
     // A file of another version may contain anything: say nothing else about it.
     if let Some(problem) = unknown_format(&tree) {
@@ -156,11 +157,10 @@ fn read_text(path: &Path) -> Result<String, SceneError> {
             io::ErrorKind::NotFound => "there is no such scene file".to_owned(),
             _ => format!("cannot read the scene file: {io}"),
         };
-        SceneError::file(SceneErrorKind::Io, &origin, message, help, Some(io))
+        SceneError::file(SceneErrorKind::Io, &origin, message, help)
     };
-    let other = |kind, message: &str, help| {
-        SceneError::file(kind, &origin, message.to_owned(), Some(help), None)
-    };
+    let other =
+        |kind, message: &str, help| SceneError::file(kind, &origin, message.to_owned(), Some(help));
 
     if path.is_dir() {
         let help = "name the scene file in it, such as `scene.toml`";

@@ -24,6 +24,29 @@ pub(super) fn check(tree: &Spanned<DeTable<'_>>) -> Vec<(Problem, Range<usize>)>
     walk.problems
 }
 
+/// The keywords of JSON Schema that are understood here; the first five say nothing about files.
+#[cfg(test)]
+pub(super) const KEYWORDS: [&str; 18] = [
+    "$schema",
+    "$defs",
+    "title",
+    "description",
+    "default",
+    "$ref",
+    "oneOf",
+    "anyOf",
+    "const",
+    "type",
+    "properties",
+    "required",
+    "additionalProperties",
+    "items",
+    "minItems",
+    "maxItems",
+    "format",
+    "minimum",
+];
+
 /// A member of a group in a group ... is two steps further in than the group.
 const PATH_LEN_MAX: usize = 2 * GROUP_NESTING_MAX + 2;
 
@@ -177,8 +200,8 @@ impl Walk {
             let name = key.get_ref().as_ref();
             if let Some(field) = fields.get(name) {
                 self.enter(name, |walk| walk.value(field, value));
-            } else if let Some(any) = schema["additionalProperties"].as_object() {
-                self.enter(name, |walk| walk.value(&Value::Object(any.clone()), value));
+            } else if schema["additionalProperties"].is_object() {
+                self.enter(name, |walk| walk.value(&schema["additionalProperties"], value));
             } else {
                 let names: Vec<&str> = fields.keys().map(String::as_str).collect();
                 meant.extend(suggest::closest(name, names.iter().copied()));
@@ -316,9 +339,8 @@ fn expected(schema: &Value) -> String {
     }
     if let Some(variants) = schema.get("oneOf").and_then(Value::as_array) {
         let names: Option<Vec<_>> = variants.iter().map(constant).collect();
-        return names.map_or("a table".to_owned(), |names| {
-            format!("one of {}", suggest::list_any(names.into_iter().map(|name| name.trim())))
-        });
+        return names
+            .map_or("a table".to_owned(), |names| format!("one of {}", suggest::list_any(names)));
     }
     let name = match &schema["type"] {
         Value::Array(names) => names.first().and_then(Value::as_str),

@@ -173,6 +173,24 @@ fn columns_count_characters() {
 }
 
 #[test]
+fn long_lines_and_names_are_cut() {
+    let long = "x".repeat(1_000_000);
+    let shown = parse(&format!("{GOOD}\n{long} = 1"), "x").unwrap_err().to_string();
+    assert!(shown.len() < 5000, "{}", shown.len());
+    let shown = parse(&format!("{long} = 1\n{GOOD}"), "x").unwrap_err().to_string();
+    assert!(shown.len() < 5000 && shown.contains("x:1:1"), "{}", shown.len());
+}
+
+#[test]
+fn marks_and_ends_of_other_systems() {
+    let text = format!("\u{feff}{}", GOOD.replace('\n', "\r\n"));
+    assert_eq!(parse(&text, "x").unwrap(), parse(GOOD, "x").unwrap());
+    let error = parse(&text.replace("radius = 1", "radius = 0"), "x").unwrap_err();
+    assert_eq!(error.line_column(), Some((21, 10)));
+    assert!(!error.to_string().contains('\r'));
+}
+
+#[test]
 fn files() {
     let folder = tempfile::tempdir().unwrap();
     let fails = |name: &str, kind: SceneErrorKind, expected: &str| {

@@ -4,12 +4,12 @@ use proptest::prelude::*;
 
 use crate::builtin;
 use crate::desc::*;
-use crate::file::{Source, parse, parse_tree, to_desc, write_string};
+use crate::file::{parse, parse_tree, to_desc, write_string};
 
 /// Reads without asking whether the scene makes sense.
 fn read_back(text: &str) -> SceneDesc {
-    let source = Source { origin: "written.toml".to_owned(), text: text.to_owned() };
-    parse_tree(&source).and_then(|tree| to_desc(&source, tree)).unwrap()
+    let origin = "written.toml";
+    parse_tree(text, origin).and_then(|tree| to_desc(tree, text, origin)).unwrap()
 }
 
 #[test]
