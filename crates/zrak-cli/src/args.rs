@@ -65,7 +65,7 @@ pub(crate) enum Command {
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Backend (never changes the picture)")]
 pub(crate) struct BackendArgs {
-    /// What to render on: the GPU if there is one, or one of them
+    /// What to render on
     #[arg(long, short = 'b', value_name = "NAME", default_value = "auto")]
     pub(crate) backend: BackendName,
     /// Threads of the processor [default: all cores]

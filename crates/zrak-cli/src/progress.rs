@@ -100,6 +100,8 @@ impl Watch {
                     bar.set_position(n_samples);
                     bar.set_message(message);
                 }
+                // Before the first samples there is nothing to say, only to draw.
+                None if n_samples == 0 => {}
                 None => {
                     let percent = 100.0 * n_samples as f64 / n_total as f64;
                     terminal::note(&format!("{percent:.0} %  {message}"));
@@ -116,7 +118,7 @@ impl Watch {
             message += &format!(
                 "  {} Msamples/s  {} left",
                 text::number(samples_per_s / 1e6),
-                text::duration((n_left / samples_per_s).ceil())
+                text::remaining(n_left / samples_per_s)
             );
         }
         message

@@ -12,6 +12,11 @@ pub(crate) fn duration(seconds: f64) -> String {
     }
 }
 
+/// Seconds that are left, which nobody needs to the millisecond.
+pub(crate) fn remaining(seconds: f64) -> String {
+    if seconds < 100.0 { format!("{:.0} s", seconds.ceil()) } else { duration(seconds) }
+}
+
 /// A number with three digits that matter.
 pub(crate) fn number(value: f64) -> String {
     match value.abs() {

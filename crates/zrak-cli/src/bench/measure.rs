@@ -97,10 +97,11 @@ pub(super) fn measure(args: &BenchArgs, backends: &[BenchBackend], control: &Con
     results
 }
 
-/// Time of a point by the last one of its backend: proportional to the number of pixels.
+/// Time of a point by the last one of its backend: tracing is proportional to the number of pixels.
 fn estimate_s(points: &[Point], backend: BenchBackend, [width, height]: [u32; 2]) -> Option<f64> {
     let last = points.iter().rfind(|point| point.backend == backend)?;
-    Some(last.total_s * f64::from(width) * f64::from(height) / last.n_pixels())
+    let times_as_many = f64::from(width) * f64::from(height) / last.n_pixels();
+    Some(last.total_s + last.render_s * (times_as_many - 1.0))
 }
 
 fn skip(results: &mut Results, backend: BenchBackend, [width, height]: [u32; 2], estimate_s: f64) {
@@ -207,7 +208,7 @@ mod tests {
     #[test]
     fn estimates_grow_with_the_pixels() {
         let points = [made_up(BenchBackend::Cpu1, 100, 2.0), made_up(BenchBackend::Cpu, 100, 1.0)];
-        assert_eq!(estimate_s(&points, BenchBackend::Cpu1, [300, 200]), Some(12.0));
+        assert_eq!(estimate_s(&points, BenchBackend::Cpu1, [300, 200]), Some(11.5));
         assert_eq!(estimate_s(&points, BenchBackend::Cuda, [300, 200]), None);
     }
 }

@@ -10,7 +10,7 @@ use crate::text::{Align, count, duration, number, table};
 pub(super) fn tables(setup: &Setup, backends: &[BenchBackend], results: &Results) -> String {
     let Setup { scene, spp, runs, cpu, .. } = setup;
     let runs = count(*runs as usize, "run");
-    let mut out = format!("\n{scene}, {spp} samples per pixel, median of {runs}, on {cpu}");
+    let mut out = format!("\n{scene}, {spp} spp, median of {runs}, on {cpu}");
     if let Some(gpu) = setup.gpu.as_ref().filter(|_| backends.contains(&BenchBackend::Cuda)) {
         // Writing to a string cannot fail.
         let _ = write!(out, " and {gpu}");

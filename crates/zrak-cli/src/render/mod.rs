@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
-use zrak::{RenderOutput, Scene, Transfer};
+use zrak::{BackendChoice, ErrorKind, RenderOptions, RenderOutput, Scene, Transfer};
 
 use crate::args::BackendArgs;
 use crate::exit_codes::Exit;
@@ -77,7 +77,7 @@ pub(crate) fn run(args: &RenderArgs, start: Instant) -> Result<Exit, Failure> {
     // What was finished before a failure is written like what was finished before Ctrl-C.
     let (output, failure) = match rendered {
         Ok(output) => (Some(output), None),
-        Err(error) => (error.finished().cloned(), Some(Failure::from(error))),
+        Err(error) => (error.finished().cloned(), Some(explain(error, &options))),
     };
     if let Some(output) = output {
         let write_start = Instant::now();
@@ -101,6 +101,16 @@ pub(crate) fn run(args: &RenderArgs, start: Instant) -> Result<Exit, Failure> {
         }
     }
     failure.map_or(Ok(Exit::Success), Err)
+}
+
+/// What to tell of a backend that failed: who asked for a GPU may not know that any will do.
+fn explain(error: zrak::Error, options: &RenderOptions) -> Failure {
+    let is_missing = error.kind() == ErrorKind::Backend && error.finished().is_none();
+    if is_missing && options.backend == BackendChoice::Cuda {
+        let advice = "`--backend auto` renders the same picture on what there is";
+        return Failure::new(Exit::Backend, format!("{error}; {advice}"));
+    }
+    error.into()
 }
 
 /// Where to write, once it is known that all of it can be written to.

@@ -8,7 +8,7 @@ use zrak::{RenderOptions, RenderOutput, Scene};
 use super::RenderArgs;
 use crate::failure::Failure;
 use crate::terminal;
-use crate::text::{Align, duration, mega_per_s, number, table};
+use crate::text::{Align, count, duration, mega_per_s, number, table};
 
 /// A finished or stopped render and its times from the start of the process.
 pub(super) struct Report<'a> {
@@ -156,11 +156,11 @@ impl Report<'_> {
             .map(|(name, seconds, remark)| vec![format!("  {name}"), duration(seconds), remark])
             .collect();
         let mut out = format!(
-            "{}: {}x{} pixels, {} samples per pixel, on {}\n",
+            "{}: {}x{} pixels, {} per pixel, on {}\n",
             desc.name,
             desc.camera.width,
             desc.camera.height,
-            output.n_samples,
+            count(output.n_samples as usize, "sample"),
             output.backend.device
         );
         out += &table(&[Align::Left, Align::Right, Align::Left], &rows);
