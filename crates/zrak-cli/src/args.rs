@@ -1,5 +1,8 @@
 //! The command line, from which the help, the completions and the man pages are made.
 
+use std::fmt;
+use std::str::FromStr;
+
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use zrak::{BackendChoice, RenderOptions, Tree};
 
@@ -75,8 +78,8 @@ pub(crate) struct BackendArgs {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) device: u32,
     /// Threads of a CUDA block along x and y
-    #[arg(long, value_name = "WxH", default_value = "16x16", value_parser = parse_block)]
-    pub(crate) block: [u32; 2],
+    #[arg(long, value_name = "WxH", default_value_t = Block::default())]
+    pub(crate) block: Block,
     /// How the processor finds the closest hit
     #[arg(long, value_name = "NAME", default_value = "wide", hide_short_help = true)]
     pub(crate) tree: TreeName,
@@ -90,7 +93,7 @@ impl BackendArgs {
             threads: self.threads,
             tree: self.tree.into(),
             device: self.device,
-            block: self.block,
+            block: self.block.0,
         }
     }
 }
@@ -156,14 +159,34 @@ pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-/// The shape of a block that CUDA can take.
-pub(crate) fn parse_block(text: &str) -> Result<[u32; 2], String> {
-    let [x, y] = parse_size(text)?;
-    let n_threads = u64::from(x) * u64::from(y);
-    if n_threads > 1024 {
-        return Err(format!("a block has at most 1024 threads, and {x} x {y} = {n_threads}"));
+/// A shape of blocks that CUDA can take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Block(pub(crate) [u32; 2]);
+
+impl Default for Block {
+    fn default() -> Self {
+        Self(RenderOptions::default().block)
     }
-    Ok([x, y])
+}
+
+impl fmt::Display for Block {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y] = self.0;
+        write!(f, "{x}x{y}")
+    }
+}
+
+impl FromStr for Block {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let [x, y] = parse_size(text)?;
+        let n_threads = u64::from(x) * u64::from(y);
+        if n_threads > 1024 {
+            return Err(format!("a block has at most 1024 threads, and {x} x {y} = {n_threads}"));
+        }
+        Ok(Self([x, y]))
+    }
 }
 
 #[cfg(test)]
@@ -188,10 +211,10 @@ mod tests {
     #[test]
     fn blocks_are_what_cuda_can_take() {
         for (text, block) in [("16x16", Some([16, 16])), ("32x4", Some([32, 4]))] {
-            assert_eq!(parse_block(text).ok(), block);
+            assert_eq!(text.parse().ok(), block.map(Block));
         }
         for text in ["", "16", "0x4", "x", "33x32", "-1x2", "4x4x4", "65536x65536"] {
-            assert!(parse_block(text).is_err(), "{text}");
+            assert!(text.parse::<Block>().is_err(), "{text}");
         }
     }
 }

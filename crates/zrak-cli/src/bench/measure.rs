@@ -6,6 +6,7 @@ use serde::Serialize;
 use zrak::{Control, RenderOptions};
 
 use super::{BenchArgs, BenchBackend};
+use crate::args::Block;
 use crate::failure::Failure;
 use crate::overrides::Overrides;
 use crate::terminal;
@@ -64,7 +65,7 @@ pub(super) fn overrides(args: &BenchArgs, [width, height]: [u32; 2]) -> Override
 /// Measures all points, until it is stopped or a backend fails.
 pub(super) fn measure(args: &BenchArgs, backends: &[BenchBackend], control: &Control) -> Results {
     let mut results = Results::default();
-    let block = args.blocks[0];
+    let block = Block::default();
     for &size in &args.resolutions {
         for &backend in backends {
             let estimate = estimate_s(&results.points, backend, size);
@@ -118,7 +119,7 @@ fn skip(results: &mut Results, backend: BenchBackend, [width, height]: [u32; 2],
 fn median(
     args: &BenchArgs,
     backend: BenchBackend,
-    block: [u32; 2],
+    block: Block,
     size: [u32; 2],
     control: &Control,
 ) -> Result<Option<Point>, Failure> {
@@ -147,7 +148,7 @@ fn median(
 fn run(
     args: &BenchArgs,
     backend: BenchBackend,
-    block: [u32; 2],
+    block: Block,
     size: [u32; 2],
     control: &Control,
 ) -> Result<Option<Point>, Failure> {
@@ -169,7 +170,7 @@ fn run(
         backend,
         width,
         height,
-        block: (backend == BenchBackend::Cuda).then_some(block),
+        block: (backend == BenchBackend::Cuda).then_some(block.0),
         build_s,
         compile_s: times.compile_s,
         upload_s: times.upload_s,

@@ -14,7 +14,7 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 use zrak::{BackendChoice, RenderOptions};
 
-use crate::args::{parse_block, parse_size};
+use crate::args::{Block, parse_size};
 use crate::exit_codes::Exit;
 use crate::failure::Failure;
 use crate::{interrupt, machine, terminal, text};
@@ -50,12 +50,14 @@ pub(crate) struct BenchArgs {
     /// What to measure: one thread, all threads, the GPU
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_value = "cpu1,cpu,cuda")]
     backends: Vec<BenchBackend>,
-    /// Shapes of CUDA blocks to try at the largest size; the first is that of the other points
+    /// Shapes of CUDA blocks to try at the largest size; the other points have the default shape
     #[arg(
-        long, value_name = "WxH,...", value_delimiter = ',', value_parser = parse_block,
-        default_value = "16x16,4x4,8x8,20x20,32x4"
+        long,
+        value_name = "WxH,...",
+        value_delimiter = ',',
+        default_value = "4x4,8x8,16x16,20x20,32x4"
     )]
-    blocks: Vec<[u32; 2]>,
+    blocks: Vec<Block>,
     /// Number of the CUDA device
     #[arg(long, value_name = "N", default_value_t = 0)]
     device: u32,
@@ -100,7 +102,7 @@ impl BenchBackend {
         }
     }
 
-    fn options(self, device: u32, block: [u32; 2]) -> RenderOptions {
+    fn options(self, device: u32, Block(block): Block) -> RenderOptions {
         let cpu = RenderOptions { backend: BackendChoice::Cpu, ..RenderOptions::default() };
         match self {
             Self::Cpu1 => RenderOptions { threads: Some(1), ..cpu },
