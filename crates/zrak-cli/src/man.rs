@@ -47,10 +47,17 @@ fn pages() -> io::Result<Vec<(String, String)>> {
     // Gives the subcommands their whole names, such as zrak-render.
     root.build();
     let page = |command: &Command| {
-        let man = Man::new(command.clone());
+        let man = Man::new(command.clone()).source(format!("zrak {}", zrak::VERSION));
         let mut text = Vec::new();
         man.render(&mut text)?;
-        Ok((man.get_filename(), String::from_utf8_lossy(&text).into_owned()))
+        Ok((man.get_filename(), unfilled_examples(&String::from_utf8_lossy(&text))))
     };
     std::iter::once(&root).chain(root.get_subcommands()).map(page).collect()
+}
+
+/// A page whose examples, which are columns of text, are not made into a paragraph.
+fn unfilled_examples(page: &str) -> String {
+    let Some((before, examples)) = page.split_once(".SH EXTRA\n") else { return page.to_owned() };
+    let (examples, after) = examples.split_at(examples.find("\n.SH ").unwrap_or(examples.len()));
+    format!("{before}.SH EXAMPLES AND NOTES\n.nf\n{examples}\n.fi{after}")
 }
