@@ -64,3 +64,6 @@ impl Camera {
         Ray { o: self.origin + lens, d: (target - lens).normalized(), time }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -122,3 +122,6 @@ impl PixelSum {
         Color::new(r, g, b)
     }
 }
+
+#[cfg(test)]
+mod tests;

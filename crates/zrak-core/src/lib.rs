@@ -30,3 +30,6 @@ pub mod sampler;
 pub mod scene;
 pub mod shapes;
 pub mod textures;
+
+#[cfg(test)]
+mod testing;

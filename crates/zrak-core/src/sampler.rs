@@ -91,3 +91,6 @@ impl Sampler {
         self.draw(FREE_FLIGHT_DIMS | lowbias32(self.bounce ^ lowbias32(medium)))
     }
 }
+
+#[cfg(test)]
+mod tests;

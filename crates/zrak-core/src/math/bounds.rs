@@ -31,7 +31,7 @@ pub struct Slab {
 }
 
 impl Bounds {
-    /// Contains nothing; the union with it is the other box.
+    /// Contains nothing; the union with it is the other box. Not to be tested against rays.
     pub const EMPTY: Self =
         Self { lo: Vec3::splat(f32::INFINITY), hi: Vec3::splat(f32::NEG_INFINITY) };
 

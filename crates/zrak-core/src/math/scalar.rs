@@ -69,7 +69,7 @@ pub fn lerp(t: f32, a: f32, b: f32) -> f32 {
 #[must_use]
 pub fn floor(x: f32) -> i32 {
     let truncated = x as i32;
-    if (truncated as f32) > x { truncated.wrapping_sub(1) } else { truncated }
+    if (truncated as f32) > x { truncated.saturating_sub(1) } else { truncated }
 }
 
 /// Next larger `f32`; infinity stays.

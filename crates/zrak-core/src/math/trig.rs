@@ -21,7 +21,7 @@ fn cos_kernel(x: f32) -> f32 {
     ((2.443_315_7e-5 * z - 1.388_731_6e-3) * z + 4.166_664_6e-2) * z * z - 0.5 * z + 1.0
 }
 
-/// Sine and cosine of `turns` full turns, for |turns| < 2^22. Absolute error below 1.2e-7.
+/// Sine and cosine of `turns` full turns, for |turns| < 2^21. Absolute error below 1.2e-7.
 #[inline(always)]
 #[must_use]
 pub fn sin_cos_turns(turns: f32) -> (f32, f32) {
@@ -33,11 +33,15 @@ pub fn sin_cos_turns(turns: f32) -> (f32, f32) {
     if quarters & 2 == 0 { (s, c) } else { (-s, -c) }
 }
 
-/// Sine of `x` radians, for |x| < 2^22. Absolute error below 2e-7 + 1.2e-7 |x|.
+/// Sine of `x` radians. Absolute error below 2e-7 + 1.2e-7 |x| for |x| < 2^22; of larger numbers,
+/// whose neighbours are too far apart for a sine to make sense, it is 0 at last.
 #[inline(always)]
 #[must_use]
 pub fn sin(x: f32) -> f32 {
-    sin_cos_turns(x * (1.0 / TAU)).0
+    let turns = x * (1.0 / TAU);
+    // False for NaN and the infinities.
+    let turns = if turns.abs() < 2_097_152.0 { turns } else { 0.0 };
+    sin_cos_turns(turns).0
 }
 
 /// Arc tangent of `x` in [0, 1]. Absolute error below 1.2e-7.
