@@ -22,9 +22,9 @@ impl Transform {
 
     fn of_step(step: &TransformStep) -> Self {
         match *step {
-            TransformStep::Translate([x, y, z]) => Self {
-                rows: [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]],
-            },
+            TransformStep::Translate([x, y, z]) => {
+                Self { rows: [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]] }
+            }
             TransformStep::Rotate { axis, angle_deg } => rotation(axis, angle_deg),
             TransformStep::RotateXDeg(angle) => rotation([1.0, 0.0, 0.0], angle),
             TransformStep::RotateYDeg(angle) => rotation([0.0, 1.0, 0.0], angle),
@@ -115,9 +115,10 @@ impl Transform {
     /// Whether axes stay axes with their directions: moves and positive scales along the axes.
     #[must_use]
     pub fn keeps_axes(&self) -> bool {
-        self.rows.iter().enumerate().all(|(i, row)| {
-            (0..3).all(|j| if i == j { row[j] > 0.0 } else { row[j] == 0.0 })
-        })
+        self.rows
+            .iter()
+            .enumerate()
+            .all(|(i, row)| (0..3).all(|j| if i == j { row[j] > 0.0 } else { row[j] == 0.0 }))
     }
 
     /// Rounded to the renderer's precision.
