@@ -36,7 +36,8 @@ impl ImageTexture {
     #[inline(always)]
     #[must_use]
     pub fn evaluate(&self, scene: &SceneView, uv: [f32; 2]) -> Color {
-        let u = uv[0] - floor(uv[0]) as f32;
+        // Without the bounds, huge coordinates would lead out of the image.
+        let u = max(0.0, min(1.0, uv[0] - floor(uv[0]) as f32));
         let v = max(0.0, min(1.0, uv[1]));
         let x = u * self.width as f32;
         let y = (1.0 - v) * self.height as f32;
