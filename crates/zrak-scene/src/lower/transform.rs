@@ -147,3 +147,23 @@ fn rotation(axis: Triple, angle_deg: f64) -> Transform {
         ],
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Transform;
+    use crate::desc::{ScaleDesc, TransformStep};
+
+    #[test]
+    fn steps_apply_in_order() {
+        let map = Transform::of_steps(&[
+            TransformStep::Scale(ScaleDesc::Uniform(2.0)),
+            TransformStep::RotateYDeg(90.0),
+            TransformStep::Translate([0.0, 0.0, 1.0]),
+        ]);
+        // x turns to -z about y.
+        let p = map.point([1.0, 3.0, 0.0]);
+        for (p, expected) in p.into_iter().zip([0.0, 6.0, -1.0]) {
+            assert!((p - expected).abs() < 1e-12, "{p} is not {expected}");
+        }
+    }
+}
