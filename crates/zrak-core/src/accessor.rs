@@ -148,7 +148,7 @@ unsafe impl<const N: usize> Zeroable for crate::accel::Node<N> {}
 unsafe impl<const N: usize> Pod for crate::accel::Node<N> {}
 
 impl<'a> crate::scene::SceneView<'a> {
-    /// View of an arena at `base` whose arrays lie where `spans` says.
+    /// View of an arena at `base` whose arrays lie where `spans` says, and in which only `kinds` occur.
     ///
     /// # Safety
     /// `base` is 256-byte aligned and valid for reads over all `spans` for `'a`; the spans are those of
@@ -159,12 +159,14 @@ impl<'a> crate::scene::SceneView<'a> {
     pub unsafe fn from_raw(
         base: *const u8,
         globals: crate::scene::Globals,
+        kinds: crate::scene::Kinds,
         spans: &crate::scene::Spans,
     ) -> Self {
         macro_rules! view {
             ($($(#[$doc:meta])* $name:ident: $record:ty,)*) => {
                 Self {
                     globals,
+                    kinds,
                     $($name: {
                         let span = spans.$name;
                         // SAFETY: by this function's contract.

@@ -58,6 +58,97 @@ macro_rules! for_each_scene_array {
     };
 }
 
+/// Kinds of things that code is needed for. A kernel that sets this to a constant loses the code of
+/// all other kinds, and with it registers; a scene may only be given to a kernel that has the code of
+/// all its kinds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Kinds {
+    /// Bit for each [`PrimKind`].
+    pub prims: u32,
+    /// Bit for each [`MaterialKind`].
+    pub materials: u32,
+    /// Bit for each [`TextureKind`].
+    pub textures: u32,
+}
+
+impl Kinds {
+    /// Everything.
+    pub const ALL: Self = Self { prims: u32::MAX, materials: u32::MAX, textures: u32::MAX };
+
+    /// Spheres that stand still, with solid colours, and no light but the background.
+    pub const PLAIN_SPHERES: Self = Self {
+        prims: 1 << PrimKind::Sphere as u32,
+        materials: 1 << MaterialKind::Lambertian as u32
+            | 1 << MaterialKind::Metal as u32
+            | 1 << MaterialKind::Dielectric as u32,
+        textures: 1 << TextureKind::Solid as u32,
+    };
+
+    /// Whether primitives of this kind may occur.
+    #[inline(always)]
+    #[must_use]
+    pub const fn has_prim(&self, kind: PrimKind) -> bool {
+        self.prims >> kind as u32 & 1 != 0
+    }
+
+    /// Whether materials of this kind may occur.
+    #[inline(always)]
+    #[must_use]
+    pub const fn has_material(&self, kind: MaterialKind) -> bool {
+        self.materials >> kind as u32 & 1 != 0
+    }
+
+    /// Whether textures of this kind may occur.
+    #[inline(always)]
+    #[must_use]
+    pub const fn has_texture(&self, kind: TextureKind) -> bool {
+        self.textures >> kind as u32 & 1 != 0
+    }
+
+    /// Whether all of `other` are among these.
+    #[must_use]
+    pub const fn include(&self, other: &Self) -> bool {
+        other.prims & !self.prims == 0
+            && other.materials & !self.materials == 0
+            && other.textures & !self.textures == 0
+    }
+}
+
+impl SceneView<'_> {
+    /// The kinds that occur in the scene's arrays.
+    #[must_use]
+    pub fn kinds_in_use(&self) -> Kinds {
+        let bit = |is_empty: bool, kind: u32| if is_empty { 0 } else { 1 << kind };
+        let prims = [
+            (self.spheres.is_empty(), PrimKind::Sphere),
+            (self.moving_spheres.is_empty(), PrimKind::MovingSphere),
+            (self.quads.is_empty(), PrimKind::Quad),
+            (self.boxes.is_empty(), PrimKind::Box),
+            (self.triangles.is_empty(), PrimKind::Triangle),
+            (self.instances.is_empty(), PrimKind::Instance),
+            (self.media.is_empty(), PrimKind::Medium),
+        ];
+        let materials = [
+            (self.lambertians.is_empty(), MaterialKind::Lambertian),
+            (self.metals.is_empty(), MaterialKind::Metal),
+            (self.dielectrics.is_empty(), MaterialKind::Dielectric),
+            (self.isotropics.is_empty(), MaterialKind::Isotropic),
+            (self.diffuse_lights.is_empty(), MaterialKind::DiffuseLight),
+        ];
+        let textures = [
+            (false, TextureKind::Solid),
+            (self.checkers.is_empty(), TextureKind::Checker),
+            (self.noises.is_empty(), TextureKind::Noise),
+            (self.images.is_empty(), TextureKind::Image),
+        ];
+        Kinds {
+            prims: prims.iter().map(|k| bit(k.0, k.1 as u32)).sum(),
+            materials: materials.iter().map(|k| bit(k.0, k.1 as u32)).sum(),
+            textures: textures.iter().map(|k| bit(k.0, k.1 as u32)).sum(),
+        }
+    }
+}
+
 /// Where an array lies in the arena.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
@@ -82,6 +173,8 @@ macro_rules! define_views {
         pub struct SceneView<'a> {
             /// Camera, background and limits.
             pub globals: Globals,
+            /// What code is needed for.
+            pub kinds: Kinds,
             $($(#[$doc])* pub $name: Array<'a, $record>,)*
         }
     };

@@ -18,7 +18,7 @@ use zrak_scene::arena::SceneArena;
 
 use crate::device::DeviceInfo;
 use crate::driver::{Context, Device, DeviceBuffer, Event, Module, PinnedBuffer};
-use crate::kernels;
+use crate::kernels::{self, RenderKernel};
 
 /// How long one launch should take.
 const LAUNCH_S: f64 = 0.08;
@@ -42,7 +42,7 @@ pub struct CudaOptions {
 
 impl Default for CudaOptions {
     fn default() -> Self {
-        Self { device: 0, block: [16, 16], max_registers: None }
+        Self { device: 0, block: [8, 8], max_registers: None }
     }
 }
 
@@ -53,6 +53,7 @@ pub struct CudaBackend {
     film: Option<DeviceBuffer<PixelSum>>,
     staging: [PinnedBuffer<PixelSum>; 2],
     module: Module,
+    kernel: RenderKernel,
     context: Context,
     scene: Arc<SceneArena>,
     block: [u32; 2],
@@ -82,11 +83,12 @@ impl CudaBackend {
         let mut times = Times::default();
         let start = Instant::now();
         let context = Context::new(device)?;
-        let max_registers = options.max_registers.unwrap_or(kernels::MAX_REGISTERS);
+        let kernel = kernels::render_kernel(&scene.view().kinds_in_use());
+        let max_registers = options.max_registers.unwrap_or(kernel.max_registers);
         let module = Module::compile(kernels::PTX, max_registers)?;
-        let kernel = module.function(kernels::RENDER_NAIVE)?;
-        let max_threads =
-            kernel.attribute(FunctionAttribute::CU_FUNC_ATTRIBUTE_MAX_THREADS_PER_BLOCK)?;
+        let max_threads = module
+            .function(kernel.name)?
+            .attribute(FunctionAttribute::CU_FUNC_ATTRIBUTE_MAX_THREADS_PER_BLOCK)?;
         check_block(options.block, u32::try_from(max_threads).unwrap_or(1))?;
         times.compile_s = start.elapsed().as_secs_f64();
 
@@ -106,6 +108,7 @@ impl CudaBackend {
             film: None,
             staging,
             module,
+            kernel,
             context,
             scene,
             block,
@@ -178,17 +181,15 @@ impl CudaBackend {
         };
         let mut arena = self.arena.pointer();
         let mut pixels = film.pointer() + (first_pixel * size_of::<PixelSum>()) as u64;
-        let mut arguments: [*mut c_void; 3] = [
-            (&raw mut arena).cast(),
-            (&raw mut pixels).cast(),
-            (&raw mut params).cast(),
-        ];
+        let mut arguments: [*mut c_void; 3] =
+            [(&raw mut arena).cast(), (&raw mut pixels).cast(), (&raw mut params).cast()];
         let grid = [band.width.div_ceil(self.block[0]), band.height.div_ceil(self.block[1])];
-        let kernel = self.module.function(kernels::RENDER_NAIVE)?;
+        let kernel = self.module.function(self.kernel.name)?;
         let start = Event::record()?;
         #[allow(unsafe_code)]
         // SAFETY: these are the arguments of the kernel: the uploaded arena, which was checked when it
-        // was packed, the band's part of the film (asserted above), and the parameters of both.
+        // was packed and has only the kernel's kinds, the band's part of the film (asserted above),
+        // and the parameters of both.
         unsafe {
             kernel.launch(grid, self.block, &mut arguments)?;
         }

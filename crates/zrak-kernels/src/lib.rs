@@ -14,19 +14,45 @@ use zrak_core::accel::Bvh2;
 use zrak_core::film::PixelSum;
 use zrak_core::integrators::render_pixel;
 use zrak_core::launch::RenderParams;
-use zrak_core::scene::SceneView;
+use zrak_core::scene::{Kinds, SceneView};
 
-/// Adds samples to the film: one thread for each pixel of the region.
+/// Defines a kernel that adds samples to the film with the naive estimator, one thread for each pixel
+/// of the region, with the code of some kinds of things.
+macro_rules! render_kernel {
+    ($(#[$doc:meta])* $name:ident, $kinds:expr) => {
+        $(#[$doc])*
+        ///
+        /// # Safety
+        /// `arena` and `params` are those of a checked arena in device memory in which only the
+        /// kernel's kinds occur; `film` points to the `params.width * params.height` pixels of the region.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "ptx-kernel" fn $name(
+            arena: *const u8,
+            film: *mut PixelSum,
+            params: RenderParams,
+        ) {
+            // SAFETY: this function's contract is that of the callee.
+            unsafe { render(arena, film, params, $kinds) };
+        }
+    };
+}
+
+render_kernel! {
+    /// Any scene.
+    render_naive, Kinds::ALL
+}
+
+render_kernel! {
+    /// Scenes of plain spheres.
+    render_naive_plain_spheres, Kinds::PLAIN_SPHERES
+}
+
+/// Finds out which pixel this thread has, renders it and stores it.
 ///
 /// # Safety
-/// `arena` and `params` are those of a checked arena in device memory; `film` points to the
-/// `params.width * params.height` pixels of the region.
-#[unsafe(no_mangle)]
-pub unsafe extern "ptx-kernel" fn render_naive(
-    arena: *const u8,
-    film: *mut PixelSum,
-    params: RenderParams,
-) {
+/// That of the kernels above.
+#[inline(always)]
+unsafe fn render(arena: *const u8, film: *mut PixelSum, params: RenderParams, kinds: Kinds) {
     // SAFETY: these only read special registers.
     let (i, j) = unsafe {
         (
@@ -38,7 +64,7 @@ pub unsafe extern "ptx-kernel" fn render_naive(
         return;
     }
     // SAFETY: by this function's contract.
-    let scene = unsafe { SceneView::from_raw(arena, params.globals, &params.spans) };
+    let scene = unsafe { SceneView::from_raw(arena, params.globals, kinds, &params.spans) };
     let accel = Bvh2 { nodes: scene.nodes2 };
     let (x, y) = (params.x + i, params.y + j);
     let sum = render_pixel(&scene, accel, x, y, params.first_sample, params.n_samples);

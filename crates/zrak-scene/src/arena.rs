@@ -11,7 +11,7 @@ mod tests;
 use bytemuck::{Pod, Zeroable};
 use zrak_core::accessor::Array;
 use zrak_core::for_each_scene_array;
-use zrak_core::scene::{Globals, SceneView, Span, Spans};
+use zrak_core::scene::{Globals, Kinds, SceneView, Span, Spans};
 
 pub use check::Corrupt;
 
@@ -37,7 +37,7 @@ macro_rules! define_arrays {
             /// The scene as it stands.
             #[must_use]
             pub fn view(&self, globals: Globals) -> SceneView<'_> {
-                SceneView { globals, $($name: Array::new(&self.$name),)* }
+                SceneView { globals, kinds: Kinds::ALL, $($name: Array::new(&self.$name),)* }
             }
 
             /// Where each array will lie, and the size of all of them in bytes.
@@ -70,6 +70,7 @@ macro_rules! define_arrays {
                 let bytes = self.bytes();
                 SceneView {
                     globals: self.globals,
+                    kinds: Kinds::ALL,
                     $($name: {
                         let span = self.spans.$name;
                         let start = span.offset as usize * OFFSET_UNIT;

@@ -49,7 +49,9 @@ impl Path {
             self.radiance += self.throughput * scene.globals.background.radiance(self.ray.d);
             return false;
         };
-        let scatter = if hit.prim.kind() == Some(PrimKind::Medium) {
+        let scatter = if scene.kinds.has_prim(PrimKind::Medium)
+            && hit.prim.kind() == Some(PrimKind::Medium)
+        {
             // Collided in a medium.
             let medium = scene.media.get(hit.prim.index());
             let p = self.ray.at(hit.t);

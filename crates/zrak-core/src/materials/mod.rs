@@ -67,14 +67,21 @@ pub fn respond(
     sampler: &Sampler,
 ) -> Response {
     let i = surface.material.index();
+    let has = |kind| scene.kinds.has_material(kind);
     match surface.material.kind() {
-        Some(MaterialKind::Lambertian) => scene.lambertians.get(i).respond(scene, surface, d, sampler),
-        Some(MaterialKind::Metal) => scene.metals.get(i).respond(scene, surface, d, sampler),
-        Some(MaterialKind::Dielectric) => scene.dielectrics.get(i).respond(surface, d, sampler),
-        Some(MaterialKind::DiffuseLight) => {
+        Some(kind @ MaterialKind::Lambertian) if has(kind) => {
+            scene.lambertians.get(i).respond(scene, surface, d, sampler)
+        }
+        Some(kind @ MaterialKind::Metal) if has(kind) => {
+            scene.metals.get(i).respond(scene, surface, d, sampler)
+        }
+        Some(kind @ MaterialKind::Dielectric) if has(kind) => {
+            scene.dielectrics.get(i).respond(surface, d, sampler)
+        }
+        Some(kind @ MaterialKind::DiffuseLight) if has(kind) => {
             scene.diffuse_lights.get(i).respond(scene, surface, d)
         }
         // A phase function on a surface: the host refuses it.
-        Some(MaterialKind::Isotropic) | None => Response::ABSORBED,
+        _ => Response::ABSORBED,
     }
 }

@@ -72,9 +72,7 @@ pub fn primitive_bounds(scene: &SceneView, prim: PrimRef, shutter: Shutter) -> B
             let instance = scene.instances.get(i);
             instance.bounds(primitive_bounds(scene, instance.target, shutter))
         }
-        Some(PrimKind::Medium) => {
-            primitive_bounds(scene, scene.media.get(i).boundary, shutter)
-        }
+        Some(PrimKind::Medium) => primitive_bounds(scene, scene.media.get(i).boundary, shutter),
         Some(PrimKind::Node) | None => Bounds::EMPTY,
     }
 }
@@ -90,15 +88,22 @@ pub fn intersect_primitive(
     t_enter: f32,
 ) -> Option<f32> {
     let i = prim.index();
+    let has = |kind| scene.kinds.has_prim(kind);
     let t = match prim.kind() {
-        Some(PrimKind::Sphere) => scene.spheres.get(i).intersect(ray),
-        Some(PrimKind::MovingSphere) => scene.moving_spheres.get(i).intersect(ray),
-        Some(PrimKind::Quad) => scene.quads.get(i).intersect(ray),
-        Some(PrimKind::Box) => scene.boxes.get(i).intersect(ray),
-        Some(PrimKind::Triangle) => scene.triangles.get(i).intersect(ray),
-        Some(PrimKind::Instance) => scene.instances.get(i).intersect(scene, ray),
-        Some(PrimKind::Medium) => scene.media.get(i).intersect(scene, i, ray, sampler, t_enter),
-        Some(PrimKind::Node) | None => None,
+        Some(kind @ PrimKind::Sphere) if has(kind) => scene.spheres.get(i).intersect(ray),
+        Some(kind @ PrimKind::MovingSphere) if has(kind) => {
+            scene.moving_spheres.get(i).intersect(ray)
+        }
+        Some(kind @ PrimKind::Quad) if has(kind) => scene.quads.get(i).intersect(ray),
+        Some(kind @ PrimKind::Box) if has(kind) => scene.boxes.get(i).intersect(ray),
+        Some(kind @ PrimKind::Triangle) if has(kind) => scene.triangles.get(i).intersect(ray),
+        Some(kind @ PrimKind::Instance) if has(kind) => {
+            scene.instances.get(i).intersect(scene, ray)
+        }
+        Some(kind @ PrimKind::Medium) if has(kind) => {
+            scene.media.get(i).intersect(scene, i, ray, sampler, t_enter)
+        }
+        _ => None,
     };
     t.map(|t| max(t, t_enter))
 }
@@ -113,15 +118,20 @@ pub fn surface_interaction(
     t: f32,
 ) -> SurfaceInteraction {
     let i = prim.index();
+    let has = |kind| scene.kinds.has_prim(kind);
     match prim.kind() {
-        Some(PrimKind::Sphere) => scene.spheres.get(i).interaction(ray, t),
-        Some(PrimKind::MovingSphere) => scene.moving_spheres.get(i).interaction(ray, t),
-        Some(PrimKind::Quad) => scene.quads.get(i).interaction(ray, t),
-        Some(PrimKind::Box) => scene.boxes.get(i).interaction(ray, t),
-        Some(PrimKind::Triangle) => scene.triangles.get(i).interaction(ray, t),
-        Some(PrimKind::Instance) => scene.instances.get(i).interaction(scene, ray, t),
+        Some(kind @ PrimKind::Sphere) if has(kind) => scene.spheres.get(i).interaction(ray, t),
+        Some(kind @ PrimKind::MovingSphere) if has(kind) => {
+            scene.moving_spheres.get(i).interaction(ray, t)
+        }
+        Some(kind @ PrimKind::Quad) if has(kind) => scene.quads.get(i).interaction(ray, t),
+        Some(kind @ PrimKind::Box) if has(kind) => scene.boxes.get(i).interaction(ray, t),
+        Some(kind @ PrimKind::Triangle) if has(kind) => scene.triangles.get(i).interaction(ray, t),
+        Some(kind @ PrimKind::Instance) if has(kind) => {
+            scene.instances.get(i).interaction(scene, ray, t)
+        }
         // Not surfaces: never asked for.
-        Some(PrimKind::Medium | PrimKind::Node) | None => SurfaceInteraction {
+        _ => SurfaceInteraction {
             p: ray.at(t),
             p_error: Vec3::ZERO,
             n: Vec3::ZERO,

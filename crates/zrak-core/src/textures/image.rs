@@ -48,9 +48,8 @@ impl ImageTexture {
         let (x, y) = (x - 0.5, y - 0.5);
         let (ix, iy) = (floor(x), floor(y));
         let (fx, fy) = (x - ix as f32, y - iy as f32);
-        let row = |iy: i32| {
-            Color::lerp(fx, self.texel(scene, ix, iy), self.texel(scene, ix + 1, iy))
-        };
+        let row =
+            |iy: i32| Color::lerp(fx, self.texel(scene, ix, iy), self.texel(scene, ix + 1, iy));
         Color::lerp(fy, row(iy), row(iy + 1))
     }
 

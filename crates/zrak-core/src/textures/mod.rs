@@ -42,14 +42,21 @@ impl ColorInput {
     #[must_use]
     pub fn evaluate(&self, scene: &SceneView, p: Vec3, uv: [f32; 2]) -> Color {
         let mut input = *self;
+        let has = |kind| scene.kinds.has_texture(kind);
         // Checkers lead to other textures; the host made sure that they do not lead in a circle.
         loop {
             let i = input.texture.index();
             match input.texture.kind() {
-                Some(TextureKind::Checker) => input = scene.checkers.get(i).pick(p),
-                Some(TextureKind::Noise) => return scene.noises.get(i).evaluate(p),
-                Some(TextureKind::Image) => return scene.images.get(i).evaluate(scene, uv),
-                Some(TextureKind::Solid) | None => return input.solid,
+                Some(kind @ TextureKind::Checker) if has(kind) => {
+                    input = scene.checkers.get(i).pick(p)
+                }
+                Some(kind @ TextureKind::Noise) if has(kind) => {
+                    return scene.noises.get(i).evaluate(p);
+                }
+                Some(kind @ TextureKind::Image) if has(kind) => {
+                    return scene.images.get(i).evaluate(scene, uv);
+                }
+                _ => return input.solid,
             }
         }
     }
