@@ -67,7 +67,7 @@ impl Rng {
         loop {
             let mut v = [self.range(-1.0, 1.0), self.range(-1.0, 1.0), self.range(-1.0, 1.0)];
             let length = length(v);
-            if length > 1.0 || length < 0.01 {
+            if !(0.01..=1.0).contains(&length) {
                 continue;
             }
             if self.chance(0.05) {

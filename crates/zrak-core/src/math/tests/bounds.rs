@@ -10,9 +10,9 @@ fn coordinate() -> impl Strategy<Value = f32> {
     prop_oneof![
         4 => (-10_i32..10).prop_map(|x| x as f32),
         4 => -1.0_f32..1.0,
-        1 => (-1e6_f32..1e6),
-        1 => (-1e-6_f32..1e-6),
-        1 => (-1e12_f32..1e12),
+        1 => -1e6_f32..1e6,
+        1 => -1e-6_f32..1e-6,
+        1 => -1e12_f32..1e12,
         1 => prop_oneof![Just(0.0_f32), Just(-0.0), Just(1e-38), Just(-1e-30), Just(1.0)],
     ]
 }
@@ -78,7 +78,7 @@ proptest! {
         // Directions are rounded, so a ray only comes as near to its aim as that is far away.
         let size = bounds.hi.abs().max_component().max(bounds.lo.abs().max_component());
         let way = double(way);
-        prop_assume!(crate::testing::length(way) > 1e-3);
+        prop_assume!(length(way) > 1e-3);
         let o = single(add(p, scaled(unit(way), -far * f64::from(size))));
         let to = sub(p, double(o));
         prop_assume!(length(to) > 0.0);

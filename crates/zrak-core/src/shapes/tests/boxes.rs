@@ -156,10 +156,10 @@ fn texture_coordinates_run_so_that_u_cross_v_points_out() {
             let normal = crate::testing::unit(cross(gradients[0], gradients[1]));
             assert!(crate::testing::dot(normal, n) > 0.999, "axis {axis}, side {side}");
             // From rim to rim they go from 0 to 1.
-            for k in 0..2 {
-                let i = (0..3).find(|&i| gradients[k][i] != 0.0).unwrap();
+            for gradient in gradients {
+                let i = (0..3).find(|&i| gradient[i] != 0.0).unwrap();
                 let width = 2.0 * f64::from(b.hi.to_array()[i]);
-                assert!((gradients[k][i].abs() * width - 1.0).abs() < 1e-4);
+                assert!((gradient[i].abs() * width - 1.0).abs() < 1e-4);
             }
         }
     }

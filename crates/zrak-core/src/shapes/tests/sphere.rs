@@ -227,9 +227,8 @@ fn texture_coordinates_follow_the_book() {
     // Both sides of the seam at -x.
     let tilt = 1e-3_f32;
     let just = |z: f32| at(single(unit([-1.0, 0.0, f64::from(z)])))[0];
-    assert!(
-        (just(tilt) - tilt / 6.283).abs() < 1e-5 && (just(-tilt) - 1.0 + tilt / 6.283).abs() < 1e-5
-    );
+    let turns = tilt / std::f32::consts::TAU;
+    assert!((just(tilt) - turns).abs() < 1e-5 && (just(-tilt) - 1.0 + turns).abs() < 1e-5);
 
     let mut rng = Rng::new(5);
     for _ in 0..200_000 {

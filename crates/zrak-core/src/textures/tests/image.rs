@@ -19,8 +19,7 @@ fn image(format: u32, bilinear: u32, first_word: u32) -> ImageTexture {
 
 /// The picture as linear texels, after some words of another one.
 fn linear_scene() -> TestScene {
-    let mut scene = TestScene::default();
-    scene.texels = vec![f32::NAN.to_bits(); 7];
+    let mut scene = TestScene { texels: vec![f32::NAN.to_bits(); 7], ..TestScene::default() };
     for y in 0..HEIGHT {
         for x in 0..WIDTH {
             scene.texels.extend(texel(x, y).to_array().map(f32::to_bits));
@@ -94,8 +93,8 @@ fn bilinear_is_the_weighted_mean_of_four() {
 
 #[test]
 fn codes_go_through_the_table() {
-    let mut scene = TestScene::default();
-    scene.srgb_table = (0..256).map(|i| i as f32 * 3.0).collect();
+    let srgb_table = (0..256).map(|i| i as f32 * 3.0).collect();
+    let mut scene = TestScene { srgb_table, ..TestScene::default() };
     for y in 0..HEIGHT {
         for x in 0..WIDTH {
             scene.texels.push(u32::from_le_bytes([x as u8, y as u8, 200 + x as u8, 255]));
@@ -132,8 +131,8 @@ fn extreme_coordinates_read_some_texel() {
 
 #[test]
 fn a_single_texel_is_everywhere() {
-    let mut scene = TestScene::default();
-    scene.texels = [0.25_f32, 0.5, 1.0].map(f32::to_bits).to_vec();
+    let texels = [0.25_f32, 0.5, 1.0].map(f32::to_bits).to_vec();
+    let scene = TestScene { texels, ..TestScene::default() };
     let view = scene.view();
     let mut rng = Rng::new(2);
     for bilinear in [0, 1] {

@@ -101,9 +101,7 @@ fn hits_move_with_their_objects() {
             &|steps| sphere([0.1, 0.2, 0.3], 0.9, steps),
             &|steps| cuboid([-0.5, -0.6, -0.7], [0.8, 0.7, 0.6], steps),
             &|steps| quad([-0.8, -0.7, 0.1], [1.5, 0.1, 0.2], [0.2, 1.6, -0.3], steps),
-            &|steps| {
-                triangle([[-0.9, -0.8, 0.0], [0.9, -0.7, 0.3], [0.0, 0.9, -0.2]], steps)
-            },
+            &|steps| triangle([[-0.9, -0.8, 0.0], [0.9, -0.7, 0.3], [0.0, 0.9, -0.2]], steps),
         ];
         for object in objects {
             let plain = arena(&scene(vec![object(Vec::new())]));
@@ -135,8 +133,7 @@ fn hits_move_with_their_objects() {
                 assert!(distance(same.p, there.p) < 1e-4 && distance(same.n, there.n) < 1e-3);
                 // Normals by the inverse transposed; of flat shapes to the image of their own side.
                 let m = back.rows;
-                let normal: Triple =
-                    std::array::from_fn(|j| (0..3).map(|k| m[k][j] * n[k]).sum());
+                let normal: Triple = std::array::from_fn(|j| (0..3).map(|k| m[k][j] * n[k]).sum());
                 let normal = single(normal).normalized();
                 assert!(distance(there.n, normal) < 1e-3, "{:?} {normal:?} {steps:?}", there.n);
                 if !matches!(object(Vec::new()), ObjectDesc::Sphere { .. }) {
@@ -210,8 +207,7 @@ fn mirrored_lights_shine_from_the_image_of_their_side() {
                 let ray = Ray { o, d: vec3(0.0, -side, 0.0), time: 0.0 };
                 let surface = hit(&arena, &ray).unwrap();
                 let sampler = Sampler::new(0, 0, 0, 0);
-                let response =
-                    zrak_core::materials::respond(&view, &surface, ray.d, &sampler);
+                let response = zrak_core::materials::respond(&view, &surface, ray.d, &sampler);
                 let shines = response.emitted.r == 3.0;
                 assert_eq!(shines, (side > 0.0) == up, "{factors:?}");
             }

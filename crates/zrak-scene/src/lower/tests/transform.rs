@@ -16,9 +16,7 @@ fn of(steps: &[TransformStep]) -> Transform {
 fn random_step(rng: &mut Rng) -> TransformStep {
     match rng.range(0.0, 7.0) as u32 {
         0 => TransformStep::Translate(rng.triple(10.0)),
-        1 => {
-            TransformStep::Rotate { axis: rng.triple(3.0), angle_deg: rng.range(-400.0, 400.0) }
-        }
+        1 => TransformStep::Rotate { axis: rng.triple(3.0), angle_deg: rng.range(-400.0, 400.0) },
         2 => TransformStep::RotateXDeg(rng.range(-400.0, 400.0)),
         3 => TransformStep::RotateYDeg(rng.range(-400.0, 400.0)),
         4 => TransformStep::RotateZDeg(rng.range(-400.0, 400.0)),
