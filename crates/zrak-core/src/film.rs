@@ -104,8 +104,9 @@ impl PixelSum {
     /// Adds the samples of another film for the same pixel.
     #[inline(always)]
     pub fn merge(&mut self, other: &Self) {
-        for (sum, o) in self.radiance.iter_mut().zip(&other.radiance) {
-            *sum = sum.plus(*o);
+        // By index: iterators over both became a loop over pointers on the GPU.
+        for i in 0..3 {
+            self.radiance[i] = self.radiance[i].plus(other.radiance[i]);
         }
         self.n_samples += other.n_samples;
         self.n_rays += other.n_rays;

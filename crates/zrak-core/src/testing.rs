@@ -255,7 +255,7 @@ macro_rules! define_test_scene {
 
         impl TestScene {
             pub(crate) fn view_with(&self, globals: Globals) -> SceneView<'_> {
-                SceneView { globals, $($name: Array::new(&self.$name),)* }
+                SceneView { globals, kinds: crate::scene::Kinds::ALL, $($name: Array::new(&self.$name),)* }
             }
         }
     };

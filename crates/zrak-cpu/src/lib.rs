@@ -7,3 +7,4 @@ mod tile;
 mod tests;
 
 pub use backend::{CpuBackend, Tree};
+pub use tile::instruction_set;

@@ -46,6 +46,12 @@ impl Simd {
     }
 }
 
+/// Name of the vector instructions that this processor's tiles are rendered with.
+#[must_use]
+pub fn instruction_set() -> &'static str {
+    Simd::detect().name()
+}
+
 /// Renders samples of the pixels of a region, row by row.
 pub(crate) fn render_tile(
     simd: Simd,

@@ -181,11 +181,8 @@ impl CudaBackend {
         };
         let mut arena = self.arena.pointer();
         let mut pixels = film.pointer() + (first_pixel * size_of::<PixelSum>()) as u64;
-        let mut arguments: [*mut c_void; 3] = [
-            (&raw mut arena).cast(),
-            (&raw mut pixels).cast(),
-            (&raw mut params).cast(),
-        ];
+        let mut arguments: [*mut c_void; 3] =
+            [(&raw mut arena).cast(), (&raw mut pixels).cast(), (&raw mut params).cast()];
         let grid = [band.width.div_ceil(self.block[0]), band.height.div_ceil(self.block[1])];
         let kernel = self.module.function(self.kernel.name)?;
         let start = Event::record()?;

@@ -27,9 +27,9 @@ const RENDER_KERNELS: [RenderKernel; 2] = [
     RenderKernel {
         name: "render_naive_plain_spheres",
         kinds: Kinds::PLAIN_SPHERES,
-        max_registers: 64,
+        max_registers: 80,
     },
-    RenderKernel { name: "render_naive", kinds: Kinds::ALL, max_registers: 128 },
+    RenderKernel { name: "render_naive", kinds: Kinds::ALL, max_registers: 80 },
 ];
 
 /// The most special kernel that has the code of all these kinds.

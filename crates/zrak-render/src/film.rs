@@ -18,7 +18,8 @@ impl Film {
     /// Film without samples.
     #[must_use]
     pub fn new(region: Region) -> Self {
-        Self { region, pixels: vec![PixelSum::ZERO; region.n_pixels()] }
+        // Zeroed by the system, page by page as it is written to.
+        Self { region, pixels: bytemuck::zeroed_vec(region.n_pixels()) }
     }
 
     /// Forgets all samples.

@@ -92,16 +92,8 @@ pub fn n_threads(threads: Option<usize>) -> usize {
 
 /// The vector instructions that the processor backend uses on this machine, such as `AVX2`.
 #[must_use]
-pub fn cpu_instruction_set() -> String {
-    // The backend says it of itself, and a backend needs a scene: the smallest will do.
-    let device = builtin::find("quads")
-        .and_then(|quads| lower(&(quads.build)(), &LowerOptions::new("")).ok())
-        .and_then(|arena| CpuBackend::new(Arc::new(arena), Some(1), Tree::Wide).ok())
-        .map(|backend| backend.info().device);
-    match device.as_deref().and_then(|device| device.split_once(", ")) {
-        Some((_, name)) => name.to_owned(),
-        None => "unknown".to_owned(),
-    }
+pub fn cpu_instruction_set() -> &'static str {
+    zrak_cpu::instruction_set()
 }
 
 /// The two kinds of backend that a choice leads to.

@@ -24,8 +24,8 @@ pub(super) fn hash(root: &Path) -> anyhow::Result<String> {
     let mut hasher = Sha256::new();
     for file in files {
         let name = file.strip_prefix(root)?.to_string_lossy().replace('\\', "/");
-        let content = std::fs::read(&file)
-            .with_context(|| format!("cannot read {}", file.display()))?;
+        let content =
+            std::fs::read(&file).with_context(|| format!("cannot read {}", file.display()))?;
         hasher.update((name.len() as u64).to_le_bytes());
         hasher.update(name.as_bytes());
         hasher.update((content.len() as u64).to_le_bytes());
@@ -40,8 +40,8 @@ fn collect(path: &Path, files: &mut Vec<PathBuf>) -> anyhow::Result<()> {
         return Ok(());
     }
     if path.is_dir() {
-        let entries = std::fs::read_dir(path)
-            .with_context(|| format!("cannot read {}", path.display()))?;
+        let entries =
+            std::fs::read_dir(path).with_context(|| format!("cannot read {}", path.display()))?;
         for entry in entries {
             collect(&entry?.path(), files)?;
         }

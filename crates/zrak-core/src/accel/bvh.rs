@@ -67,11 +67,15 @@ impl<const N: usize, const S: usize> Accel for Bvh<'_, N, S> {
         let mut memory = StackMemory::<Entry, S>::new();
         let mut stack = Stack::new(&mut memory);
         let mut best = NO_HIT;
-        let mut current: Entry = (0.0, PrimRef(0));
-        loop {
+        let mut current: Option<Entry> = Some((0.0, PrimRef(0)));
+        // Loops have a single exit each: see `render_pixel` about what compilers do otherwise.
+        while let Some(entry) = current {
             // Go down to a leaf, the nearest child first.
-            while current.1.is_node() {
-                let node = self.nodes.get(current.1.index());
+            let mut leaf = Some(entry);
+            while let Some((_, link)) = leaf
+                && link.is_node()
+            {
+                let node = self.nodes.get(link.index());
                 let mut enter = [0.0; N];
                 let mut leave = [0.0; N];
                 for i in 0..N {
@@ -83,38 +87,35 @@ impl<const N: usize, const S: usize> Accel for Bvh<'_, N, S> {
                     let z1 = (node.hi[2][i] - ray.o.z) * inv_d.z;
                     enter[i] = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), 0.0));
                     // The slack keeps the test conservative; beyond the closest hit nothing counts.
-                    leave[i] = min(
-                        min(max(x0, x1), min(max(y0, y1), max(z0, z1))) * SLAB_SLACK,
-                        best.t,
-                    );
+                    leave[i] =
+                        min(min(max(x0, x1), min(max(y0, y1), max(z0, z1))) * SLAB_SLACK, best.t);
                 }
-                current = match next_child(&node, &enter, &leave, &mut stack) {
-                    Some(child) => child,
-                    None => match pop(&mut stack, best.t) {
-                        Some(entry) => entry,
-                        None => return found(best),
-                    },
-                };
+                leaf = next_child(&node, &enter, &leave, &mut stack);
+                if leaf.is_none() {
+                    leaf = pop(&mut stack, best.t);
+                }
             }
-            keep_closer(&mut best, scene, current.1, ray, sampler, current.0);
-            current = match pop(&mut stack, best.t) {
-                Some(entry) => entry,
-                None => return found(best),
-            };
+            current = None;
+            if let Some((t_enter, prim)) = leaf {
+                keep_closer(&mut best, scene, prim, ray, sampler, t_enter);
+                current = pop(&mut stack, best.t);
+            }
         }
+        found(best)
     }
 }
 
 /// Takes the next entry that can still hold a closer hit.
 #[inline(always)]
 fn pop<const S: usize>(stack: &mut Stack<'_, Entry, S>, t_best: f32) -> Option<Entry> {
-    loop {
-        let entry = stack.pop()?;
-        // An equally close one with a smaller handle would count.
-        if entry.0 <= t_best {
-            return Some(entry);
-        }
+    let mut entry = stack.pop();
+    // An equally close one with a smaller handle would count, so those are kept.
+    while let Some((t_enter, _)) = entry
+        && t_enter > t_best
+    {
+        entry = stack.pop();
     }
+    entry
 }
 
 /// The nearest child that the ray meets; the others go on the stack, the farthest first.

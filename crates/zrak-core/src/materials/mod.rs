@@ -69,9 +69,15 @@ pub fn respond(
     let i = surface.material.index();
     let has = |kind| scene.kinds.has_material(kind);
     match surface.material.kind() {
-        Some(kind @ MaterialKind::Lambertian) if has(kind) => scene.lambertians.get(i).respond(scene, surface, d, sampler),
-        Some(kind @ MaterialKind::Metal) if has(kind) => scene.metals.get(i).respond(scene, surface, d, sampler),
-        Some(kind @ MaterialKind::Dielectric) if has(kind) => scene.dielectrics.get(i).respond(surface, d, sampler),
+        Some(kind @ MaterialKind::Lambertian) if has(kind) => {
+            scene.lambertians.get(i).respond(scene, surface, d, sampler)
+        }
+        Some(kind @ MaterialKind::Metal) if has(kind) => {
+            scene.metals.get(i).respond(scene, surface, d, sampler)
+        }
+        Some(kind @ MaterialKind::Dielectric) if has(kind) => {
+            scene.dielectrics.get(i).respond(surface, d, sampler)
+        }
         Some(kind @ MaterialKind::DiffuseLight) if has(kind) => {
             scene.diffuse_lights.get(i).respond(scene, surface, d)
         }

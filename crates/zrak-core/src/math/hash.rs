@@ -17,8 +17,7 @@ pub fn lowbias32(mut x: u32) -> u32 {
 #[inline(always)]
 #[must_use]
 pub fn pcg3d(v: [u32; 3]) -> [u32; 3] {
-    let [mut x, mut y, mut z] =
-        v.map(|w| w.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
+    let [mut x, mut y, mut z] = v.map(|w| w.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
     x = x.wrapping_add(y.wrapping_mul(z));
     y = y.wrapping_add(z.wrapping_mul(x));
     z = z.wrapping_add(x.wrapping_mul(y));

@@ -48,8 +48,7 @@ pub fn sin(x: f32) -> f32 {
 #[inline(always)]
 fn atan_kernel(x: f32) -> f32 {
     // tan(pi/8): beyond, atan(x) = pi/4 + atan((x - 1) / (x + 1)).
-    let (base, x) =
-        if x > 0.414_213_56 { (FRAC_PI_4, (x - 1.0) / (x + 1.0)) } else { (0.0, x) };
+    let (base, x) = if x > 0.414_213_56 { (FRAC_PI_4, (x - 1.0) / (x + 1.0)) } else { (0.0, x) };
     let z = x * x;
     let p = (((8.053_744_5e-2 * z - 1.387_768_6e-1) * z + 1.997_771_1e-1) * z - 3.333_294_9e-1) * z;
     base + (p * x + x)

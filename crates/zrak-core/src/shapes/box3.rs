@@ -71,12 +71,9 @@ impl Shape for Box3 {
             None => (1.0, 0),
         };
         let clamped = ray.at(t).zip(self.lo, max).zip(self.hi, min);
-        let size = self.hi - self.lo;
-        let rel = vec3(
-            (clamped.x - self.lo.x) / size.x,
-            (clamped.y - self.lo.y) / size.y,
-            (clamped.z - self.lo.z) / size.z,
-        );
+        // A side that rounding made flat has one coordinate only.
+        let share = |part: f32, whole: f32| if whole > 0.0 { part / whole } else { 0.0 };
+        let rel = (clamped - self.lo).zip(self.hi - self.lo, share);
         // On the face, its coordinate is exact; u and v run so that u x v is the outward normal.
         let face = |d: f32, lo: f32, hi: f32| if d * toward > 0.0 { hi } else { lo };
         let sign = |d: f32| if d * toward > 0.0 { 1.0 } else { -1.0 };

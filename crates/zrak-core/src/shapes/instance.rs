@@ -95,4 +95,3 @@ impl Instance {
 fn widen(error: Vec3) -> Vec3 {
     error * 1.01
 }
-

@@ -72,9 +72,7 @@ pub fn primitive_bounds(scene: &SceneView, prim: PrimRef, shutter: Shutter) -> B
             let instance = scene.instances.get(i);
             instance.bounds(primitive_bounds(scene, instance.target, shutter))
         }
-        Some(PrimKind::Medium) => {
-            primitive_bounds(scene, scene.media.get(i).boundary, shutter)
-        }
+        Some(PrimKind::Medium) => primitive_bounds(scene, scene.media.get(i).boundary, shutter),
         Some(PrimKind::Node) | None => Bounds::EMPTY,
     }
 }
@@ -93,12 +91,18 @@ pub fn intersect_primitive(
     let has = |kind| scene.kinds.has_prim(kind);
     let t = match prim.kind() {
         Some(kind @ PrimKind::Sphere) if has(kind) => scene.spheres.get(i).intersect(ray),
-        Some(kind @ PrimKind::MovingSphere) if has(kind) => scene.moving_spheres.get(i).intersect(ray),
+        Some(kind @ PrimKind::MovingSphere) if has(kind) => {
+            scene.moving_spheres.get(i).intersect(ray)
+        }
         Some(kind @ PrimKind::Quad) if has(kind) => scene.quads.get(i).intersect(ray),
         Some(kind @ PrimKind::Box) if has(kind) => scene.boxes.get(i).intersect(ray),
         Some(kind @ PrimKind::Triangle) if has(kind) => scene.triangles.get(i).intersect(ray),
-        Some(kind @ PrimKind::Instance) if has(kind) => scene.instances.get(i).intersect(scene, ray),
-        Some(kind @ PrimKind::Medium) if has(kind) => scene.media.get(i).intersect(scene, i, ray, sampler, t_enter),
+        Some(kind @ PrimKind::Instance) if has(kind) => {
+            scene.instances.get(i).intersect(scene, ray)
+        }
+        Some(kind @ PrimKind::Medium) if has(kind) => {
+            scene.media.get(i).intersect(scene, i, ray, sampler, t_enter)
+        }
         _ => None,
     };
     t.map(|t| max(t, t_enter))
@@ -117,11 +121,15 @@ pub fn surface_interaction(
     let has = |kind| scene.kinds.has_prim(kind);
     match prim.kind() {
         Some(kind @ PrimKind::Sphere) if has(kind) => scene.spheres.get(i).interaction(ray, t),
-        Some(kind @ PrimKind::MovingSphere) if has(kind) => scene.moving_spheres.get(i).interaction(ray, t),
+        Some(kind @ PrimKind::MovingSphere) if has(kind) => {
+            scene.moving_spheres.get(i).interaction(ray, t)
+        }
         Some(kind @ PrimKind::Quad) if has(kind) => scene.quads.get(i).interaction(ray, t),
         Some(kind @ PrimKind::Box) if has(kind) => scene.boxes.get(i).interaction(ray, t),
         Some(kind @ PrimKind::Triangle) if has(kind) => scene.triangles.get(i).interaction(ray, t),
-        Some(kind @ PrimKind::Instance) if has(kind) => scene.instances.get(i).interaction(scene, ray, t),
+        Some(kind @ PrimKind::Instance) if has(kind) => {
+            scene.instances.get(i).interaction(scene, ray, t)
+        }
         // Not surfaces: never asked for.
         _ => SurfaceInteraction {
             p: ray.at(t),

@@ -83,6 +83,12 @@ impl Shape for Quad {
         let (au, bv) = (self.u * alpha, self.v * beta);
         let p = self.corner + au + bv;
         let p_error = (self.corner.abs() + au.abs() + bv.abs()) * gamma(10);
-        SurfaceInteraction { p, p_error, n: self.normal, uv: [alpha, beta], material: self.material }
+        SurfaceInteraction {
+            p,
+            p_error,
+            n: self.normal,
+            uv: [alpha, beta],
+            material: self.material,
+        }
     }
 }

@@ -82,12 +82,10 @@ impl Triangle {
         let delta_z = gamma(3) * max_z;
         let delta_x = gamma(5) * (max_x + max_z);
         let delta_y = gamma(5) * (max_y + max_z);
-        let delta_e =
-            2.0 * (gamma(2) * max_x * max_y + delta_y * max_x + delta_x * max_y);
+        let delta_e = 2.0 * (gamma(2) * max_x * max_y + delta_y * max_x + delta_x * max_y);
         let max_e = largest(e0, e1, e2);
-        let delta_t = 3.0
-            * (gamma(3) * max_e * max_z + delta_e * max_z + delta_z * max_e)
-            * inv_det.abs();
+        let delta_t =
+            3.0 * (gamma(3) * max_e * max_z + delta_e * max_z + delta_z * max_e) * inv_det.abs();
         if t > delta_t && t < f32::INFINITY {
             Some((t, [e0 * inv_det, e1 * inv_det, e2 * inv_det]))
         } else {

@@ -36,7 +36,8 @@ impl ImageTexture {
     #[inline(always)]
     #[must_use]
     pub fn evaluate(&self, scene: &SceneView, uv: [f32; 2]) -> Color {
-        let u = uv[0] - floor(uv[0]) as f32;
+        // Without the bounds, huge coordinates would lead out of the image.
+        let u = max(0.0, min(1.0, uv[0] - floor(uv[0]) as f32));
         let v = max(0.0, min(1.0, uv[1]));
         let x = u * self.width as f32;
         let y = (1.0 - v) * self.height as f32;
@@ -47,9 +48,8 @@ impl ImageTexture {
         let (x, y) = (x - 0.5, y - 0.5);
         let (ix, iy) = (floor(x), floor(y));
         let (fx, fy) = (x - ix as f32, y - iy as f32);
-        let row = |iy: i32| {
-            Color::lerp(fx, self.texel(scene, ix, iy), self.texel(scene, ix + 1, iy))
-        };
+        let row =
+            |iy: i32| Color::lerp(fx, self.texel(scene, ix, iy), self.texel(scene, ix + 1, iy));
         Color::lerp(fy, row(iy), row(iy + 1))
     }
 

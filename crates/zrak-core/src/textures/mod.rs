@@ -47,9 +47,15 @@ impl ColorInput {
         loop {
             let i = input.texture.index();
             match input.texture.kind() {
-                Some(kind @ TextureKind::Checker) if has(kind) => input = scene.checkers.get(i).pick(p),
-                Some(kind @ TextureKind::Noise) if has(kind) => return scene.noises.get(i).evaluate(p),
-                Some(kind @ TextureKind::Image) if has(kind) => return scene.images.get(i).evaluate(scene, uv),
+                Some(kind @ TextureKind::Checker) if has(kind) => {
+                    input = scene.checkers.get(i).pick(p)
+                }
+                Some(kind @ TextureKind::Noise) if has(kind) => {
+                    return scene.noises.get(i).evaluate(p);
+                }
+                Some(kind @ TextureKind::Image) if has(kind) => {
+                    return scene.images.get(i).evaluate(scene, uv);
+                }
                 _ => return input.solid,
             }
         }

@@ -3,7 +3,7 @@
 //! Perlin, *An Image Synthesizer*, SIGGRAPH 1985. The gradients are unit vectors hashed from the
 //! lattice point, so there is no table and no period below 2^32; they are blended by Hermite cubics.
 
-use crate::math::{Vec3, dot, floor, pcg3d, sqrt, vec3};
+use crate::math::{Vec3, dot, floor, max, min, pcg3d, sqrt, vec3};
 
 /// Gradient at a lattice point: a unit vector.
 #[inline(always)]
@@ -20,7 +20,9 @@ fn gradient(x: i32, y: i32, z: i32, seed: u32) -> Vec3 {
 #[must_use]
 pub fn perlin(p: Vec3, seed: u32) -> f32 {
     let (ix, iy, iz) = (floor(p.x), floor(p.y), floor(p.z));
-    let f = vec3(p.x - ix as f32, p.y - iy as f32, p.z - iz as f32);
+    // Where the cell's number does not fit, every number is a whole one: a lattice point.
+    let within = |x: f32, i: i32| max(0.0, min(1.0, x - i as f32));
+    let f = vec3(within(p.x, ix), within(p.y, iy), within(p.z, iz));
     let smooth = f.map(|t| t * t * (3.0 - 2.0 * t));
     let mut sum = 0.0;
     for corner in 0..8_i32 {

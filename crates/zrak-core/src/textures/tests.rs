@@ -1,1 +1,5 @@
 //! Tests.
+
+mod checker;
+mod image;
+mod noise;

@@ -3,6 +3,8 @@
 // Each test program uses a part of it.
 #![allow(dead_code, unreachable_pub)]
 
+pub mod scenes;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

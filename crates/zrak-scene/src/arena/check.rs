@@ -59,8 +59,7 @@ pub(super) fn check(scene: &SceneView) -> Check {
     for medium in records(&scene.media) {
         check_prim(scene, medium.boundary)?;
         require(
-            is_plain_convex(medium.boundary)
-                || medium.boundary.kind() == Some(PrimKind::Instance),
+            is_plain_convex(medium.boundary) || medium.boundary.kind() == Some(PrimKind::Instance),
             || format!("a medium in primitive {:#x}", medium.boundary.0),
         )?;
         check_material(scene, medium.material)?;
@@ -80,8 +79,8 @@ pub(super) fn check(scene: &SceneView) -> Check {
         for texture in [checker.even.texture, checker.odd.texture] {
             check_texture(scene, texture)?;
             // To earlier ones only, so that no chain is a circle.
-            let is_later = texture.kind() == Some(TextureKind::Checker)
-                && texture.index() as usize >= i;
+            let is_later =
+                texture.kind() == Some(TextureKind::Checker) && texture.index() as usize >= i;
             require(!is_later, || format!("checker {i} refers to a later one"))?;
         }
     }

@@ -38,10 +38,7 @@ impl LowerOptions {
     /// Options for a scene whose paths are relative to `base_dir`.
     #[must_use]
     pub fn new(base_dir: impl AsRef<Path>) -> Self {
-        Self {
-            base_dir: base_dir.as_ref().to_owned(),
-            image_limits: zrak_image::Limits::default(),
-        }
+        Self { base_dir: base_dir.as_ref().to_owned(), image_limits: zrak_image::Limits::default() }
     }
 }
 

@@ -33,8 +33,10 @@ struct Lowering<'a> {
 }
 
 /// Material of the boundaries of media: never looked at.
-const NO_MATERIAL: LoweredMaterial =
-    LoweredMaterial { handle: MaterialRef::new(zrak_core::scene::MaterialKind::Isotropic, 0), needs_uv: false };
+const NO_MATERIAL: LoweredMaterial = LoweredMaterial {
+    handle: MaterialRef::new(zrak_core::scene::MaterialKind::Isotropic, 0),
+    needs_uv: false,
+};
 
 fn single(v: Triple) -> Vec3 {
     let [x, y, z] = v.map(|x| x as f32);
@@ -122,9 +124,8 @@ impl Lowering<'_> {
         to_world: &Transform,
     ) -> PrimRef {
         // A turned sphere is the same sphere, unless its texture turns with it.
-        let scale = to_world.uniform_scale().filter(|_| {
-            !material.needs_uv || to_world.keeps_axes()
-        });
+        let scale =
+            to_world.uniform_scale().filter(|_| !material.needs_uv || to_world.keeps_axes());
         let (place, scale) = match scale {
             Some(scale) => (*to_world, scale),
             None => (Transform::IDENTITY, 1.0),

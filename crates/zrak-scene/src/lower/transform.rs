@@ -22,9 +22,9 @@ impl Transform {
 
     fn of_step(step: &TransformStep) -> Self {
         match *step {
-            TransformStep::Translate([x, y, z]) => Self {
-                rows: [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]],
-            },
+            TransformStep::Translate([x, y, z]) => {
+                Self { rows: [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]] }
+            }
             TransformStep::Rotate { axis, angle_deg } => rotation(axis, angle_deg),
             TransformStep::RotateXDeg(angle) => rotation([1.0, 0.0, 0.0], angle),
             TransformStep::RotateYDeg(angle) => rotation([0.0, 1.0, 0.0], angle),
@@ -115,9 +115,10 @@ impl Transform {
     /// Whether axes stay axes with their directions: moves and positive scales along the axes.
     #[must_use]
     pub fn keeps_axes(&self) -> bool {
-        self.rows.iter().enumerate().all(|(i, row)| {
-            (0..3).all(|j| if i == j { row[j] > 0.0 } else { row[j] == 0.0 })
-        })
+        self.rows
+            .iter()
+            .enumerate()
+            .all(|(i, row)| (0..3).all(|j| if i == j { row[j] > 0.0 } else { row[j] == 0.0 }))
     }
 
     /// Rounded to the renderer's precision.
@@ -144,5 +145,25 @@ fn rotation(axis: Triple, angle_deg: f64) -> Transform {
             [y * x * k + z * s, c + y * y * k, y * z * k - x * s, 0.0],
             [z * x * k - y * s, z * y * k + x * s, c + z * z * k, 0.0],
         ],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Transform;
+    use crate::desc::{ScaleDesc, TransformStep};
+
+    #[test]
+    fn steps_apply_in_order() {
+        let map = Transform::of_steps(&[
+            TransformStep::Scale(ScaleDesc::Uniform(2.0)),
+            TransformStep::RotateYDeg(90.0),
+            TransformStep::Translate([0.0, 0.0, 1.0]),
+        ]);
+        // x turns to -z about y.
+        let p = map.point([1.0, 3.0, 0.0]);
+        for (p, expected) in p.into_iter().zip([0.0, 6.0, -1.0]) {
+            assert!((p - expected).abs() < 1e-12, "{p} is not {expected}");
+        }
     }
 }

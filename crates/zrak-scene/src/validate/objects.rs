@@ -2,19 +2,20 @@
 
 use super::checker::Checker;
 use super::limits::{GROUP_NESTING_MAX, LENGTH_MIN, NUMBER_MAX};
-use super::transforms::{self, Affine, IDENTITY};
+use super::transforms;
 use super::{are_parallel, length, sub};
 use crate::desc::{BoundaryDesc, MaterialDesc, ObjectDesc, Triple};
+use crate::lower::Transform;
 
 pub(super) fn check(checker: &mut Checker<'_>, objects: &[ObjectDesc]) {
-    check_all(checker, objects, Some(IDENTITY), 0);
+    check_all(checker, objects, Some(Transform::IDENTITY), 0);
 }
 
 /// `outer` is the map of the groups around, none if that is degenerate.
 fn check_all(
     checker: &mut Checker<'_>,
     objects: &[ObjectDesc],
-    outer: Option<Affine>,
+    outer: Option<Transform>,
     n_groups: usize,
 ) {
     for (i, object) in objects.iter().enumerate() {
@@ -25,7 +26,7 @@ fn check_all(
 fn check_one(
     checker: &mut Checker<'_>,
     object: &ObjectDesc,
-    outer: Option<Affine>,
+    outer: Option<Transform>,
     n_groups: usize,
 ) {
     match object {
@@ -160,9 +161,9 @@ fn cuboid(checker: &mut Checker<'_>, min: Triple, max: Triple) -> Option<Vec<Tri
 }
 
 /// Checks that a good shape under a good map stays within reach.
-fn reach(checker: &mut Checker<'_>, map: Option<Affine>, corners: Option<Vec<Triple>>) {
+fn reach(checker: &mut Checker<'_>, map: Option<Transform>, corners: Option<Vec<Triple>>) {
     let (Some(map), Some(corners)) = (map, corners) else { return };
-    let is_far = |p: Triple| transforms::apply(&map, p).iter().any(|x| x.abs() > NUMBER_MAX);
+    let is_far = |p: Triple| map.point(p).iter().any(|x| x.abs() > NUMBER_MAX);
     if corners.into_iter().any(is_far) {
         let message = "the object reaches further than 1e12 from the origin";
         checker.note("", message, Some("choose a larger unit of length"));
