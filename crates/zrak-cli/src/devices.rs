@@ -56,7 +56,7 @@ fn find() -> Devices {
     let cpu = Cpu {
         name: machine::cpu_model(),
         threads: zrak::n_threads(None),
-        instruction_set: zrak::cpu_instruction_set(),
+        instruction_set: zrak::cpu_instruction_set().to_owned(),
     };
     let (found, no_cuda) = match zrak::cuda::devices() {
         Ok(found) if found.is_empty() => (found, Some("the NVIDIA driver knows no device".into())),

@@ -5,6 +5,8 @@
 //! packed, because the GPU does not.
 
 mod check;
+#[cfg(test)]
+mod tests;
 
 use bytemuck::{Pod, Zeroable};
 use zrak_core::accessor::Array;

@@ -11,8 +11,6 @@ use zrak_cpu::{CpuBackend, Tree};
 use zrak_cuda::{CudaBackend, CudaOptions};
 use zrak_render::{Backend, BackendError};
 use zrak_scene::arena::SceneArena;
-use zrak_scene::builtin;
-use zrak_scene::lower::{LowerOptions, lower};
 
 /// What to render on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

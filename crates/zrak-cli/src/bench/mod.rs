@@ -144,7 +144,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<Exit, Failure> {
         command: std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect(),
         cpu: machine::cpu_model(),
         threads: zrak::n_threads(None),
-        instruction_set: zrak::cpu_instruction_set(),
+        instruction_set: zrak::cpu_instruction_set().to_owned(),
         gpu: gpu.ok(),
         scene: scene.desc.name,
         spp: args.spp,

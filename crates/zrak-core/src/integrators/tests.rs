@@ -1,1 +1,100 @@
-//! Tests.
+//! The naive estimator's bookkeeping; whole pictures are tested in `zrak-cpu`.
+
+use super::render_pixel;
+use crate::accel::BruteForce;
+use crate::accessor::Array;
+use crate::film::PixelSum;
+use crate::materials::{DiffuseLight, Lambertian, SIDES_BOTH};
+use crate::math::{Color, Vec3, vec3};
+use crate::scene::{Background, MaterialKind, MaterialRef, PrimKind, SceneView};
+use crate::shapes::{Box3, Sphere};
+use crate::testing::{TestScene, globals, prim, solid};
+
+/// A sphere in front of the camera, in a closed light.
+fn scene(albedo: f32, emitted: f32) -> TestScene {
+    let mut scene = TestScene::default();
+    scene.lambertians.push(Lambertian { albedo: solid(Color::grey(albedo)) });
+    scene.diffuse_lights.push(DiffuseLight {
+        radiance: solid(Color::grey(emitted)),
+        sides: SIDES_BOTH,
+        _pad: [0; 3],
+    });
+    scene.spheres.push(Sphere {
+        center: vec3(0.0, 0.0, -5.0),
+        radius: 4.5,
+        material: MaterialRef::new(MaterialKind::Lambertian, 0),
+        flags: 0,
+        _pad: [0; 2],
+    });
+    scene.boxes.push(Box3 {
+        lo: Vec3::splat(-20.0),
+        material: MaterialRef::new(MaterialKind::DiffuseLight, 0),
+        hi: Vec3::splat(20.0),
+        _pad: 0,
+    });
+    scene
+}
+
+fn pixel(view: &SceneView, first: u32, count: u32) -> PixelSum {
+    let prims = [prim(PrimKind::Sphere, 0), prim(PrimKind::Box, 0)];
+    render_pixel(view, BruteForce { prims: Array::new(&prims) }, 0, 0, first, count)
+}
+
+#[test]
+fn a_path_adds_what_it_meets_times_its_throughput() {
+    let scene = scene(0.25, 8.0);
+    let view = scene.view();
+    for i in 0..200 {
+        let sum = pixel(&view, i, 1);
+        // The light at once, or after one bounce.
+        let expected = if sum.n_rays == 1 { 8.0 } else { 2.0 };
+        assert_eq!((sum.mean().to_array(), sum.n_samples), ([expected; 3], 1));
+        assert!(sum.n_rays <= 2);
+    }
+}
+
+#[test]
+fn max_depth_counts_ray_segments() {
+    let scene = scene(1.0, 1.0);
+    for (max_depth, lit) in [(1, false), (2, true)] {
+        let mut view = scene.view();
+        view.globals.max_depth = max_depth;
+        // A sample that meets the sphere first.
+        let i = (0..100).find(|&i| pixel(&scene.view(), i, 1).n_rays == 2).unwrap();
+        let sum = pixel(&view, i, 1);
+        assert_eq!(sum.n_rays, u64::from(max_depth));
+        assert_eq!(sum.mean() == Color::WHITE, lit);
+    }
+}
+
+#[test]
+fn samples_of_a_pixel_add_up_in_any_grouping() {
+    let scene = scene(0.3, 0.7);
+    let view = scene.view();
+    let whole = pixel(&view, 3, 50);
+    let mut parts = PixelSum::ZERO;
+    for (first, count) in [(20, 33), (3, 1), (4, 16), (9, 0)] {
+        parts.merge(&pixel(&view, first, count));
+    }
+    assert_eq!(parts, whole);
+    assert_eq!(pixel(&view, 0, 0), PixelSum::ZERO);
+}
+
+#[test]
+fn backgrounds_blend_by_height_and_constants_are_exact() {
+    let (bottom, top) = (Color::new(1.0, 0.0, 0.3), Color::new(0.0, 1.0, 0.3));
+    let sky = Background { bottom, top };
+    assert_eq!(sky.radiance(vec3(0.0, -1.0, 0.0)), bottom);
+    assert_eq!(sky.radiance(vec3(0.0, 1.0, 0.0)), top);
+    assert_eq!(sky.radiance(vec3(1.0, 0.0, 0.0)), Color::new(0.5, 0.5, 0.3));
+    for i in 0..1000 {
+        let y = i as f32 / 500.0 - 1.0;
+        assert_eq!(sky.radiance(vec3(0.0, y, 0.0)).b, 0.3);
+    }
+    // A camera with nothing before it sees it.
+    let empty = TestScene::default();
+    let background = Background { bottom: Color::grey(0.1), top: Color::grey(0.1) };
+    let view = empty.view_with(crate::scene::Globals { background, ..globals() });
+    let sum = render_pixel(&view, BruteForce { prims: Array::new(&[]) }, 0, 0, 0, 9);
+    assert_eq!((sum.mean(), sum.n_rays), (Color::grey(0.1), 9));
+}

@@ -1,0 +1,277 @@
+//! The arena's layout, and what its check refuses.
+
+use zrak_core::accel::{MAX_DEPTH, Node};
+use zrak_core::camera::Camera;
+use zrak_core::materials::{Dielectric, DiffuseLight, Isotropic, Lambertian, Metal};
+use zrak_core::math::{Affine, Color, Vec3};
+use zrak_core::media::ConstantMedium;
+use zrak_core::scene::{
+    Background, Globals, MaterialKind, MaterialRef, PrimKind, PrimRef, TextureKind, TextureRef,
+};
+use zrak_core::shapes::{Box3, Instance, MovingSphere, Quad, Sphere, Triangle};
+use zrak_core::textures::{
+    Checker, ColorInput, ImageTexture, Noise, PATTERN_NOISE, TEXELS_LINEAR, TEXELS_SRGB8,
+};
+
+use super::{ARENA_ALIGNMENT, SceneArena, SceneArrays};
+
+fn globals() -> Globals {
+    let camera: Camera = bytemuck::Zeroable::zeroed();
+    let background = Background { bottom: Color::WHITE, top: Color::BLACK };
+    Globals { camera, background, max_depth: 7, seed_lo: 1, seed_hi: 2, _pad: [0; 3] }
+}
+
+fn input(kind: TextureKind, index: u32) -> ColorInput {
+    ColorInput { solid: Color::grey(0.5), texture: TextureRef::new(kind, index) }
+}
+
+fn material(kind: MaterialKind) -> MaterialRef {
+    MaterialRef::new(kind, 0)
+}
+
+fn prim(kind: PrimKind) -> PrimRef {
+    PrimRef::new(kind, 0)
+}
+
+/// A root whose children are these.
+fn root<const N: usize>(children: &[PrimRef]) -> Node<N> {
+    let mut node = Node::EMPTY;
+    node.children[..children.len()].copy_from_slice(children);
+    node
+}
+
+/// One record of each array, all good.
+fn good() -> SceneArrays {
+    let mut a = SceneArrays::default();
+    let lambertian = material(MaterialKind::Lambertian);
+    a.lambertians.push(Lambertian { albedo: input(TextureKind::Checker, 1) });
+    a.metals.push(Metal { reflectance: input(TextureKind::Noise, 0), fuzz: 0.1, _pad: [0; 3] });
+    a.dielectrics.push(Dielectric { ior: 1.5, fresnel: 0, _pad: [0; 2] });
+    a.isotropics.push(Isotropic { albedo: input(TextureKind::Solid, 0) });
+    let radiance = input(TextureKind::Image, 0);
+    a.diffuse_lights.push(DiffuseLight { radiance, sides: 0, _pad: [0; 3] });
+    let checker =
+        |even| Checker { even, odd: input(TextureKind::Solid, 0), inv_scale: 1.0, _pad: [0; 3] };
+    a.checkers.push(checker(input(TextureKind::Image, 0)));
+    a.checkers.push(checker(input(TextureKind::Checker, 0)));
+    a.noises.push(Noise {
+        low: Color::BLACK,
+        scale: 1.0,
+        high: Color::WHITE,
+        pattern: PATTERN_NOISE,
+        octaves: 1,
+        seed: 0,
+        _pad: [0; 2],
+    });
+    a.images.push(ImageTexture {
+        first_word: 1,
+        width: 3,
+        height: 2,
+        format: TEXELS_SRGB8,
+        bilinear: 1,
+        _pad: [0; 3],
+    });
+    a.texels = (0..7).collect();
+    a.srgb_table = (0..256).map(|i| i as f32).collect();
+    let center = Vec3::splat(1.0);
+    a.spheres.push(Sphere { center, radius: 2.0, material: lambertian, flags: 0, _pad: [0; 2] });
+    a.moving_spheres.push(MovingSphere {
+        center,
+        radius: 1.0,
+        displacement: center,
+        material: material(MaterialKind::Metal),
+        flags: 0,
+        _pad: [0; 3],
+    });
+    a.quads.push(Quad { material: lambertian, ..bytemuck::Zeroable::zeroed() });
+    a.boxes.push(Box3 { lo: Vec3::ZERO, material: lambertian, hi: center, _pad: 0 });
+    a.triangles.push(Triangle {
+        vertices: [center; 3],
+        uv: [[0.0; 2]; 3],
+        material: material(MaterialKind::Dielectric),
+    });
+    a.instances.push(Instance {
+        world_from_object: Affine::IDENTITY,
+        object_from_world: Affine::IDENTITY,
+        target: prim(PrimKind::Sphere),
+        _pad: [0; 3],
+    });
+    a.media.push(ConstantMedium {
+        boundary: prim(PrimKind::Instance),
+        material: material(MaterialKind::Isotropic),
+        neg_mean_free_path: -1.0,
+        _pad: 0,
+    });
+    let kinds = [PrimKind::Sphere, PrimKind::Quad, PrimKind::Medium, PrimKind::Triangle];
+    a.nodes8.push(root(&kinds.map(prim)));
+    a.nodes2.push(root(&[PrimRef::new(PrimKind::Node, 1), prim(PrimKind::Box)]));
+    a.nodes2.push(root(&[prim(PrimKind::MovingSphere), prim(PrimKind::Instance)]));
+    a
+}
+
+/// Records of an array, by its handle-checked accessor.
+fn all<T: bytemuck::Pod>(array: zrak_core::accessor::Array<'_, T>) -> Vec<T> {
+    (0..array.len()).map(|i| array.get(i)).collect()
+}
+
+#[test]
+fn what_is_packed_is_what_is_seen() {
+    let arrays = good();
+    let arena = SceneArena::pack(globals(), &arrays).unwrap();
+    assert_eq!(*arena.globals(), globals());
+    let view = arena.view();
+    macro_rules! compare {
+        ($($(#[$doc:meta])* $name:ident: $record:ty,)*) => {
+            $({
+                let source: &[u8] = bytemuck::cast_slice(&arrays.$name);
+                let seen = all(view.$name);
+                assert_eq!(bytemuck::cast_slice::<$record, u8>(&seen), source, stringify!($name));
+                // In the bytes it lies where the span says, aligned for the GPU's loads.
+                let span = arena.spans().$name;
+                let start = span.offset as usize * 16;
+                assert_eq!(start % ARENA_ALIGNMENT, 0);
+                assert_eq!(&arena.bytes()[start..start + source.len()], source);
+                assert!(!source.is_empty(), "no record of {}", stringify!($name));
+            })*
+        };
+    }
+    zrak_core::for_each_scene_array!(compare);
+    assert_eq!(arena.bytes().as_ptr() as usize % ARENA_ALIGNMENT, 0);
+    assert_eq!(arena.bytes().len() % ARENA_ALIGNMENT, 0);
+    let size: usize = arena.sizes().iter().map(|(_, size)| size).sum();
+    assert!(arena.bytes().len() >= size);
+    // A copy is aligned as well.
+    let copy = arena.clone();
+    assert_eq!(copy.bytes().as_ptr() as usize % ARENA_ALIGNMENT, 0);
+    assert_eq!(copy.bytes(), arena.bytes());
+}
+
+/// Asserts that the arrays are refused once they are damaged, with a message that contains `words`.
+#[track_caller]
+fn refused(words: &str, damage: impl FnOnce(&mut SceneArrays)) {
+    let mut arrays = good();
+    damage(&mut arrays);
+    let error = match SceneArena::pack(globals(), &arrays) {
+        Ok(_) => panic!("damage was not noticed; expected: {words}"),
+        Err(error) => error.to_string(),
+    };
+    assert!(error.contains(words), "{error:?} does not say {words:?}");
+}
+
+#[test]
+fn materials_out_of_range_are_refused() {
+    let beyond = MaterialRef::new(MaterialKind::Metal, 1);
+    refused("no material", |a| a.spheres[0].material = beyond);
+    refused("no material", |a| a.moving_spheres[0].material = beyond);
+    refused("no material", |a| a.quads[0].material = beyond);
+    refused("no material", |a| a.boxes[0].material = beyond);
+    refused("no material", |a| a.triangles[0].material = beyond);
+    refused("no material", |a| a.spheres[0].material = MaterialRef(0));
+    refused("no material", |a| a.spheres[0].material = MaterialRef(u32::MAX));
+    refused("no material", |a| a.dielectrics.clear());
+    refused("no material", |a| a.media[0].material = MaterialRef::new(MaterialKind::Isotropic, 9));
+    refused("a medium with material", |a| {
+        a.media[0].material = material(MaterialKind::Lambertian);
+    });
+}
+
+#[test]
+fn textures_out_of_range_are_refused() {
+    let beyond = input(TextureKind::Noise, 1);
+    refused("no texture", |a| a.lambertians[0].albedo = beyond);
+    refused("no texture", |a| a.metals[0].reflectance = beyond);
+    refused("no texture", |a| a.isotropics[0].albedo = beyond);
+    refused("no texture", |a| a.diffuse_lights[0].radiance = beyond);
+    refused("no texture", |a| a.checkers[0].odd = beyond);
+    refused("no texture", |a| a.lambertians[0].albedo.texture = TextureRef(0xf000_0000));
+    refused("no texture", |a| a.images.clear());
+}
+
+#[test]
+fn checkers_that_lead_in_circles_are_refused() {
+    refused("refers to a later one", |a| a.checkers[0].even = input(TextureKind::Checker, 1));
+    refused("refers to a later one", |a| a.checkers[0].odd = input(TextureKind::Checker, 0));
+    refused("refers to a later one", |a| a.checkers[1].even = input(TextureKind::Checker, 1));
+}
+
+#[test]
+fn images_beyond_the_texels_are_refused() {
+    refused("beyond the texels", |a| a.images[0].first_word = 2);
+    refused("beyond the texels", |a| a.images[0].format = TEXELS_LINEAR);
+    refused("beyond the texels", |a| a.images[0].width = u32::MAX);
+    refused("beyond the texels", |a| (a.images[0].width, a.images[0].height) = (1 << 16, 1 << 16));
+    refused("beyond the texels", |a| a.images[0].first_word = u32::MAX);
+    refused("without texels", |a| a.images[0].width = 0);
+    refused("without texels", |a| a.images[0].height = 0);
+    refused("format", |a| a.images[0].format = 2);
+    refused("without the table", |a| a.srgb_table.truncate(255));
+}
+
+#[test]
+fn primitives_out_of_range_are_refused() {
+    for kind in [
+        PrimKind::Sphere,
+        PrimKind::MovingSphere,
+        PrimKind::Quad,
+        PrimKind::Box,
+        PrimKind::Triangle,
+        PrimKind::Instance,
+        PrimKind::Medium,
+    ] {
+        refused("no primitive", |a| a.nodes2[0].children[1] = PrimRef::new(kind, 1));
+        refused("no primitive", |a| a.nodes8[0].children[7] = PrimRef::new(kind, 1));
+    }
+    refused("no primitive", |a| a.nodes8[0].children[0] = PrimRef(0xf000_0000));
+    refused("no primitive", |a| a.instances[0].target = PrimRef::new(PrimKind::Sphere, 1));
+    refused("no primitive", |a| a.media[0].boundary = PrimRef::new(PrimKind::Box, 1));
+}
+
+#[test]
+fn instances_and_boundaries_of_the_wrong_kind_are_refused() {
+    for kind in [PrimKind::Quad, PrimKind::Triangle, PrimKind::Instance, PrimKind::Medium] {
+        refused("an instance of", |a| a.instances[0].target = prim(kind));
+    }
+    for kind in [PrimKind::Quad, PrimKind::Triangle, PrimKind::Medium] {
+        refused("a medium in", |a| a.media[0].boundary = prim(kind));
+    }
+    for kind in [PrimKind::Sphere, PrimKind::MovingSphere, PrimKind::Box] {
+        let mut arrays = good();
+        arrays.media[0].boundary = prim(kind);
+        arrays.instances[0].target = prim(kind);
+        assert!(SceneArena::pack(globals(), &arrays).is_ok());
+    }
+}
+
+#[test]
+fn trees_that_are_none_are_refused() {
+    let node = |i| PrimRef::new(PrimKind::Node, i);
+    refused("nodes2 has no root", |a| a.nodes2.clear());
+    refused("nodes8 has no root", |a| a.nodes8.clear());
+    // A circle, a node with two parents, one without, one out of bounds.
+    refused("as a child", |a| a.nodes2[1].children[0] = node(0));
+    refused("as a child", |a| a.nodes2[1].children[0] = node(1));
+    refused("as a child", |a| a.nodes2[0].children[1] = node(1));
+    refused("as a child", |a| a.nodes2[0].children[1] = node(2));
+    refused("has no parent", |a| a.nodes2[0].children[0] = PrimRef::NONE);
+    refused("has no parent", |a| a.nodes8.push(root(&[])));
+}
+
+#[test]
+fn trees_that_are_too_deep_for_the_stack_are_refused() {
+    let chain = |n: usize| {
+        let mut arrays = good();
+        arrays.nodes2 = (0..n)
+            .map(|i| {
+                if i + 1 < n {
+                    root(&[PrimRef::new(PrimKind::Node, i as u32 + 1), prim(PrimKind::Sphere)])
+                } else {
+                    root(&[prim(PrimKind::Sphere)])
+                }
+            })
+            .collect();
+        SceneArena::pack(globals(), &arrays).map(|_| ()).map_err(|e| e.to_string())
+    };
+    assert_eq!(chain(MAX_DEPTH), Ok(()));
+    assert!(chain(MAX_DEPTH + 1).unwrap_err().contains("too deep"));
+    assert!(chain(1000).unwrap_err().contains("too deep"));
+}
