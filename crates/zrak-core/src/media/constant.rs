@@ -9,7 +9,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::math::{gamma, ln, max};
+use crate::math::{gamma, ln, max, min};
 use crate::ray::Ray;
 use crate::sampler::Sampler;
 use crate::scene::{MaterialRef, PrimRef, SceneView};
@@ -46,18 +46,28 @@ impl ConstantMedium {
     ) -> Option<f32> {
         let [start, end] = boundary_interval(scene, self.boundary, ray)?;
         let u = sampler.free_flight(index);
-        let t = max(start + self.neg_mean_free_path * ln(1.0 - u), t_enter);
+        let mut t = max(start + self.neg_mean_free_path * ln(1.0 - u), t_enter);
         if t >= end {
             return None;
         }
-        // An event within rounding of the boundary is not taken: from a point that rounding put
-        // outside, light would leave without crossing the surface that the medium fills.
-        let p = ray.at(t);
-        let p_error = (ray.o.abs() + (ray.d * t).abs()) * gamma(3);
-        if boundary_surely_contains(scene, self.boundary, p, p_error, ray.time) {
-            Some(t)
-        } else {
-            None
+        // From a point that rounding put outside, light would leave without crossing the surface that
+        // the medium fills. So an event within rounding of where the ray enters is moved on until it
+        // is inside for certain, at most to the middle, and one within rounding of where it leaves is
+        // not taken. Dropping both would let light through a medium whose free paths are that short.
+        let middle = 0.5 * (start + end);
+        let mut step = (middle - t) * (1.0 / 1_048_576.0);
+        let mut inside = false;
+        let mut searching = true;
+        while searching {
+            let p = ray.at(t);
+            let p_error = (ray.o.abs() + (ray.d * t).abs()) * gamma(3);
+            inside = boundary_surely_contains(scene, self.boundary, p, p_error, ray.time);
+            searching = !inside && t < middle;
+            if searching {
+                step = 4.0 * max(step, p_error.max_component());
+                t = min(t + step, middle);
+            }
         }
+        if inside { Some(t) } else { None }
     }
 }

@@ -1,0 +1,190 @@
+//! Every way to find the closest hit finds the same one: the same bits of t, the same primitive. In
+//! random scenes with every kind of primitive, many of them in the same place.
+
+mod common;
+
+use common::scenes;
+use zrak_core::accel::{Accel, BruteForce, Bvh2, Bvh8};
+use zrak_core::accessor::Array;
+use zrak_core::math::{Vec3, lowbias32, unit_f32, vec3};
+use zrak_core::ray::Ray;
+use zrak_core::sampler::Sampler;
+use zrak_core::scene::{PrimKind, PrimRef, SceneView};
+use zrak_core::shapes::surface_interaction;
+use zrak_scene::arena::SceneArena;
+use zrak_scene::desc::{ObjectDesc, ScaleDesc, TransformStep, Triple};
+
+/// Random numbers.
+struct Rng(u32);
+
+impl Rng {
+    fn bits(&mut self) -> u32 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9);
+        lowbias32(self.0)
+    }
+
+    fn below(&mut self, n: u32) -> u32 {
+        self.bits() % n
+    }
+
+    fn range(&mut self, lo: f64, hi: f64) -> f64 {
+        lo + (hi - lo) * f64::from(unit_f32(self.bits()))
+    }
+
+    /// A point in a cube around the origin; half of them on a coarse grid, so that things coincide.
+    fn point(&mut self, size: f64) -> Triple {
+        let on_grid = self.below(2) == 0;
+        [(); 3].map(|()| {
+            let x = self.range(-size, size);
+            if on_grid { (x * 2.0 / size).round() * size / 2.0 } else { x }
+        })
+    }
+
+    fn direction(&mut self) -> Vec3 {
+        loop {
+            let mut v = [(); 3].map(|()| self.range(-1.0, 1.0) as f32);
+            match self.below(4) {
+                0 => v[self.below(3) as usize] = 0.0,
+                1 => {
+                    // Along an axis.
+                    let axis = self.below(3) as usize;
+                    v = [0.0, -0.0, 0.0];
+                    v[axis] = if self.below(2) == 0 { 1.0 } else { -1.0 };
+                }
+                _ => {}
+            }
+            let v = Vec3::from_array(v);
+            if v.length() > 0.1 {
+                return v.normalized();
+            }
+        }
+    }
+}
+
+fn random_object(rng: &mut Rng, size: f64) -> ObjectDesc {
+    let r = size * [0.05, 0.1, 0.25, 0.5][rng.below(4) as usize];
+    let c = rng.point(size);
+    let corner = |s: f64| c.map(|x| x + s);
+    let edge = |rng: &mut Rng| loop {
+        let e = rng.point(2.0 * r);
+        if e.iter().map(|x| x * x).sum::<f64>() > 0.01 * r * r {
+            return e;
+        }
+    };
+    let object = match rng.below(7) {
+        0 => scenes::sphere(c, r, "m"),
+        1 => scenes::moving_sphere(c, rng.point(size), r, "m"),
+        2 => {
+            // Along the axes, or any.
+            let (u, v) = if rng.below(2) == 0 {
+                ([r, 0.0, 0.0], [0.0, 0.0, 2.0 * r])
+            } else {
+                (edge(rng), edge(rng))
+            };
+            scenes::quad(c, u, v, "m")
+        }
+        3 => scenes::cuboid(c, corner(r), "m"),
+        4 => {
+            let (u, v) = (edge(rng), edge(rng));
+            let add = |e: Triple| [c[0] + e[0], c[1] + e[1], c[2] + e[2]];
+            scenes::triangle([c, add(u), add(v)], "m")
+        }
+        5 => scenes::medium(scenes::in_sphere(c, r), 1.0 / r, "mist"),
+        _ => scenes::medium(scenes::in_box(c, corner(r)), 3.0 / r, "mist"),
+    };
+    match rng.below(4) {
+        0 => {
+            let axis = [0.3, 1.0, -0.5];
+            let steps = vec![
+                TransformStep::Rotate { axis, angle_deg: rng.range(0.0, 360.0) },
+                TransformStep::Scale(ScaleDesc::PerAxis([1.0, 0.5, -0.7])),
+            ];
+            scenes::group(vec![object], steps)
+        }
+        _ => object,
+    }
+}
+
+fn random_scene(rng: &mut Rng, n: u32, size: f64) -> Option<std::sync::Arc<SceneArena>> {
+    let mut desc = scenes::scene([4, 4], 1.0);
+    desc.materials.insert("m".to_owned(), scenes::lambertian(0.5));
+    desc.materials.insert("mist".to_owned(), scenes::isotropic(0.5));
+    while (desc.objects.len() as u32) < n {
+        let object = random_object(rng, size);
+        // Now and then the same once more: ties.
+        for _ in 0..1 + u32::from(rng.below(6) == 0) {
+            desc.objects.push(object.clone());
+        }
+    }
+    // A scene with a degenerate shape is not one.
+    zrak_scene::validate::validate(&desc).is_empty().then(|| common::arena(&desc))
+}
+
+fn leaves(view: &SceneView) -> Vec<PrimRef> {
+    let nodes = (0..view.nodes2.len()).flat_map(|i| view.nodes2.get(i).children);
+    nodes.filter(|child| !child.is_node() && *child != PrimRef::NONE).collect()
+}
+
+#[test]
+fn all_ways_find_the_same_hit() {
+    let mut rng = Rng(1);
+    let (mut n_hits, mut n_rays, mut n_scenes) = (0, 0, 0);
+    let mut kinds = [0; 8];
+    while n_scenes < 300 {
+        let n = [1, 2, 3, 8, 30, 150][rng.below(6) as usize];
+        let size = [1e-3, 1.0, 1e4][rng.below(3) as usize];
+        let Some(arena) = random_scene(&mut rng, n, size) else { continue };
+        n_scenes += 1;
+        let view = arena.view();
+        let mut prims = leaves(&view);
+        let brute = |prims: &[PrimRef], ray: &Ray, sampler: &Sampler| {
+            BruteForce { prims: Array::new(prims) }.closest_hit(&view, ray, sampler)
+        };
+        let (bvh2, bvh8) = (Bvh2 { nodes: view.nodes2 }, Bvh8 { nodes: view.nodes8 });
+        let mut origin = Vec3::ZERO;
+        for i in 0..1500_u32 {
+            // From anywhere, from far away, or from where the ray before hit.
+            if i % 3 != 0 {
+                let far = if i % 3 == 1 { 1.5 } else { 50.0 };
+                let [x, y, z] = rng.point(far * size).map(|x| x as f32);
+                origin = vec3(x, y, z);
+            }
+            let d = if i % 4 == 0 {
+                let [x, y, z] = rng.point(size).map(|x| x as f32);
+                let to = vec3(x, y, z) - origin;
+                if to.length() > 1e-6 * size as f32 { to.normalized() } else { rng.direction() }
+            } else {
+                rng.direction()
+            };
+            let ray = Ray { o: origin, d, time: unit_f32(rng.bits()) };
+            let mut sampler = Sampler::new(9, i, n_scenes, 0);
+            (0..i % 5).for_each(|_| sampler.next_bounce());
+            let expected = brute(&prims, &ray, &sampler);
+            // In any order.
+            prims.reverse();
+            assert_eq!(brute(&prims, &ray, &sampler), expected, "{ray:?}");
+            for hit in
+                [bvh2.closest_hit(&view, &ray, &sampler), bvh8.closest_hit(&view, &ray, &sampler)]
+            {
+                let bits = |hit: Option<zrak_core::interaction::Hit>| {
+                    hit.map(|hit| (hit.t.to_bits(), hit.prim))
+                };
+                assert_eq!(bits(hit), bits(expected), "{ray:?}");
+            }
+            n_rays += 1;
+            if let Some(hit) = expected {
+                n_hits += 1;
+                kinds[hit.prim.kind().unwrap() as usize] += 1;
+                origin = if hit.prim.kind() == Some(PrimKind::Medium) {
+                    ray.at(hit.t)
+                } else {
+                    let s = surface_interaction(&view, hit.prim, &ray, hit.t);
+                    s.spawn(rng.direction(), 0.0).o
+                };
+            }
+        }
+    }
+    assert!(n_hits * 12 > n_rays, "{n_hits} hits of {n_rays} rays");
+    // Every kind of primitive was hit.
+    assert!(kinds[1..].iter().all(|&n| n > 400), "{kinds:?}");
+}
