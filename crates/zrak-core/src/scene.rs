@@ -1,9 +1,9 @@
 //! The scene as the renderer sees it: typed arrays in one arena, and handles into them.
 //!
 //! To add an array (for a new shape, material or texture): write its record in its own file, add
-//! one line to [`for_each_scene_array!`](crate::for_each_scene_array), and a kind to the handle that
-//! refers to it. The host's builder, the arena's layout, its bounds check and [`SceneView`] all come
-//! from that one line.
+//! one line to [`for_each_scene_array!`](crate::for_each_scene_array), a kind to the handle that refers
+//! to it, and a check of that handle to `zrak-scene`, `arena/check.rs`. The host's builder, the
+//! arena's layout and [`SceneView`] all come from that one line.
 
 use bytemuck::{Pod, Zeroable};
 

@@ -1,6 +1,6 @@
 //! The driver: what is used of it, with owners for what it hands out and errors in its own words.
 //!
-//! All `unsafe` of this crate is here. The driver library is loaded at the first call; everything
+//! All `unsafe` of this crate is here, but for the one launch in `backend.rs`. The driver library is loaded at the first call; everything
 //! goes through [`Context::new`] or [`device_count`], which find out first whether it exists.
 
 #![allow(unsafe_code)]

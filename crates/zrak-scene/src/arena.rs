@@ -40,6 +40,11 @@ macro_rules! define_arrays {
                 SceneView { globals, kinds: Kinds::ALL, $($name: Array::new(&self.$name),)* }
             }
 
+            /// Number of records of each array, by name.
+            fn lens(&self) -> Vec<(&'static str, usize)> {
+                vec![$((stringify!($name), self.$name.len()),)*]
+            }
+
             /// Where each array will lie, and the size of all of them in bytes.
             fn layout(&self) -> (Spans, usize) {
                 let mut end = 0_usize;
@@ -109,6 +114,9 @@ impl SceneArena {
     /// # Errors
     /// If a handle leads out of bounds, or the arrays are larger than an arena can be (64 GiB).
     pub fn pack(globals: Globals, arrays: &SceneArrays) -> Result<Self, Corrupt> {
+        if let Some((name, len)) = arrays.lens().into_iter().find(|l| u32::try_from(l.1).is_err()) {
+            return Err(Corrupt::new(format!("{len} {name} are more than an array can hold")));
+        }
         let (spans, size) = arrays.layout();
         if size > u32::MAX as usize * OFFSET_UNIT {
             return Err(Corrupt::new(format!("{size} bytes are more than an arena can hold")));

@@ -159,7 +159,7 @@ pub enum TextureDesc {
     Noise {
         /// Noise cells per world unit.
         scale: f64,
-        /// `noise`: one octave; `turbulence`: sum of octaves' absolute value; `marble`: sine veins along z bent by turbulence.
+        /// `noise`: one octave; `turbulence`: absolute value of a sum of octaves; `marble`: sine veins along z bent by turbulence.
         #[serde(default)]
         pattern: NoisePattern,
         /// Octaves of turbulence, 1 to 16.
@@ -177,7 +177,7 @@ pub enum TextureDesc {
     },
     /// A picture, looked up at (u, v).
     Image {
-        /// PNG, JPEG, Radiance HDR or OpenEXR file, relative to the scene file; `builtin:NAME` is a
+        /// PNG, JPEG, Radiance HDR, OpenEXR or PFM file, relative to the scene file; `builtin:NAME` is a
         /// picture inside zrak (`builtin:earth.png`).
         path: String,
         /// How texels are combined.

@@ -39,20 +39,38 @@ fn the_references_have_the_right_size() {
     }
 }
 
+/// The TOML blocks of a page.
+fn toml_blocks(page: &Path) -> Vec<String> {
+    let text = std::fs::read_to_string(page).unwrap().replace("\r\n", "\n");
+    let blocks = text.split("```toml\n").skip(1);
+    blocks.map(|rest| rest.split("```").next().unwrap().to_owned()).collect()
+}
+
+/// The pages of a folder of the documentation.
+fn pages(folder: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(root().join(folder)).unwrap();
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
+    paths.sort();
+    paths
+}
+
 #[test]
 fn the_guides_examples_are_good() {
-    let guide = std::fs::read_to_string(root().join("docs/scene-format.md")).unwrap();
-    let guide = guide.replace("\r\n", "\n");
-    let blocks: Vec<&str> =
-        guide.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
+    let format = root().join("docs/scene-format.md");
+    let blocks = toml_blocks(&format);
     assert!(blocks.len() >= 5);
-    // A fragment is an addition to the guide's first example, which is a whole scene.
-    let whole = blocks[0];
-    for block in &blocks {
-        let is_whole = block.contains("format = 1");
-        let text = if is_whole { (*block).to_owned() } else { insert(whole, block) };
-        if let Err(error) = file::parse(&text, "docs/scene-format.md") {
-            panic!("{error}\n\nin this example:\n\n{text}");
+    // A fragment is an addition to the format's first example, which is a whole scene.
+    let whole = blocks[0].clone();
+    let guide = pages("docs/guide");
+    assert!(guide.len() >= 5, "{guide:?}");
+    for page in [vec![format], guide].concat() {
+        for block in toml_blocks(&page) {
+            let is_whole = block.contains("format = 1");
+            let text = if is_whole { block } else { insert(&whole, &block) };
+            if let Err(error) = file::parse(&text, &page.display().to_string()) {
+                panic!("{error}\n\nin this example:\n\n{text}");
+            }
         }
     }
 }

@@ -26,6 +26,6 @@ impl Isotropic {
             sampler.at_bounce(BounceDim::DirectionV),
         );
         // Off by rounding; directions are of unit length.
-        Scatter { wi: wi.normalized(), attenuation: self.albedo.evaluate(scene, p, [0.0; 2]) }
+        Scatter { wi: wi.normalized(), attenuation: self.albedo.evaluate_share(scene, p, [0.0; 2]) }
     }
 }

@@ -33,7 +33,7 @@ impl Lambertian {
             sampler.at_bounce(BounceDim::DirectionV),
         );
         // The density cos / pi cancels the cosine and the 1 / pi of f.
-        Response::scattered(wi, self.albedo.evaluate(scene, surface.p, surface.uv))
+        Response::scattered(wi, self.albedo.evaluate_share(scene, surface.p, surface.uv))
     }
 }
 

@@ -53,7 +53,7 @@ impl Metal {
         if dot(wi, n) <= 0.0 || length_squared < 1e-12 {
             return Response::ABSORBED;
         }
-        let tint = self.reflectance.evaluate(scene, surface.p, surface.uv);
+        let tint = self.reflectance.evaluate_share(scene, surface.p, surface.uv);
         Response::scattered(wi.normalized(), tint)
     }
 }

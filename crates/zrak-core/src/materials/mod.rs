@@ -1,10 +1,11 @@
 //! Materials: how a surface scatters or emits light.
 //!
 //! # To add a material
-//! 1. Write its record and its `scatter` in a file of its own here, with tests against a closed form.
+//! 1. Write its record and its `respond` in a file of its own here, with tests against a closed form.
 //! 2. Add its array to [`crate::for_each_scene_array!`] and its kind to [`MaterialKind`].
-//! 3. Add it to the `match` of [`respond`].
-//! 4. On the host: describe it (`zrak-scene`, `desc.rs`), validate it, and lower it.
+//! 3. Add it to the `match` of [`respond`] and to `SceneView::kinds_in_use`.
+//! 4. On the host: describe it (`zrak-scene`, `desc.rs`), validate it, lower it, and check its handles
+//!    (`arena/check.rs`).
 //!
 //! Directions are unit vectors in world space; `d` is the ray's own direction, towards the surface.
 

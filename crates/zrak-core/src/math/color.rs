@@ -4,7 +4,7 @@ use core::ops::{Add, AddAssign, Mul, MulAssign};
 
 use bytemuck::{Pod, Zeroable};
 
-use super::scalar::{lerp, max};
+use super::scalar::{lerp, max, min};
 
 /// Radiance, albedo or attenuation, in linear sRGB.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -57,6 +57,14 @@ impl Color {
     #[must_use]
     pub fn lerp(t: f32, a: Self, b: Self) -> Self {
         Self::new(lerp(t, a.r, b.r), lerp(t, a.g, b.g), lerp(t, a.b, b.b))
+    }
+
+    /// Nearest share of light: each channel brought into [0, 1].
+    #[inline(always)]
+    #[must_use]
+    pub fn to_share(self) -> Self {
+        let clamp = |x: f32| max(0.0, min(x, 1.0));
+        Self::new(clamp(self.r), clamp(self.g), clamp(self.b))
     }
 
     /// Largest channel.

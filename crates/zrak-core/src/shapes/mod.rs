@@ -3,8 +3,9 @@
 //! # To add a shape
 //! 1. Write its record and its [`Shape`] in a file of its own here, with tests against `f64`.
 //! 2. Add its array to [`crate::for_each_scene_array!`] and its kind to [`PrimKind`].
-//! 3. Add it to the three `match`es of this file.
-//! 4. On the host: describe it (`zrak-scene`, `desc.rs`), validate it, and lower it.
+//! 3. Add it to the three `match`es of this file and to `SceneView::kinds_in_use`.
+//! 4. On the host: describe it (`zrak-scene`, `desc.rs`), validate it, lower it, and check its handles
+//!    (`arena/check.rs`).
 //!
 //! # What a hit is
 //! A ray hits a primitive if it passes the slab test of the primitive's bounds *and* the shape's own

@@ -3,8 +3,9 @@
 //! # To add a texture
 //! 1. Write its record and its evaluation in a file of its own here, with tests.
 //! 2. Add its array to [`crate::for_each_scene_array!`] and its kind to [`TextureKind`].
-//! 3. Add it to the `match` of [`ColorInput::evaluate`].
-//! 4. On the host: describe it (`zrak-scene`, `desc.rs`), validate it, and lower it.
+//! 3. Add it to the `match` of [`ColorInput::evaluate`] and to `SceneView::kinds_in_use`.
+//! 4. On the host: describe it (`zrak-scene`, `desc.rs`), validate it, lower it, and check its handles
+//!    (`arena/check.rs`).
 
 mod checker;
 mod image;
@@ -37,6 +38,14 @@ pub struct ColorInput {
 const _: () = assert!(size_of::<ColorInput>() == 16);
 
 impl ColorInput {
+    /// As [`ColorInput::evaluate`], for what must not be more than all of the light: an image with
+    /// larger values does not make surfaces that shine.
+    #[inline(always)]
+    #[must_use]
+    pub fn evaluate_share(&self, scene: &SceneView, p: Vec3, uv: [f32; 2]) -> Color {
+        self.evaluate(scene, p, uv).to_share()
+    }
+
     /// Colour at the world-space point `p` with texture coordinates `uv`.
     #[inline(always)]
     #[must_use]

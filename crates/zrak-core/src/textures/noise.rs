@@ -3,11 +3,11 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::perlin::{perlin, turbulence};
-use crate::math::{Color, Vec3, sin};
+use crate::math::{Color, Vec3, min, sin};
 
 /// (1 + noise(s p)) / 2.
 pub const PATTERN_NOISE: u32 = 0;
-/// turbulence(s p).
+/// turbulence(s p), at most 1.
 pub const PATTERN_TURBULENCE: u32 = 1;
 /// (1 + sin(s p.z + 10 turbulence(p))) / 2.
 pub const PATTERN_MARBLE: u32 = 2;
@@ -47,6 +47,7 @@ impl Noise {
             PATTERN_TURBULENCE => turbulence(p * self.scale, self.octaves, self.seed),
             _ => 0.5 * (1.0 + perlin(p * self.scale, self.seed)),
         };
-        Color::lerp(value, self.low, self.high)
+        // Turbulence may exceed 1 a little.
+        Color::lerp(min(value, 1.0), self.low, self.high)
     }
 }

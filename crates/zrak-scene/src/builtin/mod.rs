@@ -1,5 +1,5 @@
 //! The scenes that come with zrak: those of *Ray Tracing in One Weekend* and *Ray Tracing: The Next
-//! Week* (Shirley, Black and Hollasch, version 4), as the books build them.
+//! Week* (Shirley, Black and Hollasch, version 4), as the books build them, and one with everything.
 //!
 //! Where a book draws random numbers, the scene draws them in the same order from its own seeded
 //! generator, so a built-in scene is the same on every machine but not sphere for sphere the book's.
@@ -11,6 +11,7 @@ mod checkered_spheres;
 mod cornell;
 mod cover;
 mod earth;
+mod everything;
 mod final_scene;
 mod parts;
 mod perlin_spheres;
@@ -78,6 +79,11 @@ pub fn all() -> &'static [Builtin] {
             name: "final",
             summary: "The Next Week's last: everything at once, in a mist",
             build: final_scene::final_scene,
+        },
+        Builtin {
+            name: "everything",
+            summary: "One of each shape, material, texture and option, from a scene file",
+            build: everything::everything,
         },
     ]
 }

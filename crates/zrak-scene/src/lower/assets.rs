@@ -12,8 +12,10 @@ pub struct Assets;
 
 impl Assets {
     /// Names and contents.
-    const ALL: &'static [(&'static str, &'static [u8])] =
-        &[("earth.png", include_bytes!("../../../../assets/earth.png"))];
+    const ALL: &'static [(&'static str, &'static [u8])] = &[
+        ("earth.png", include_bytes!("../../../../assets/earth.png")),
+        ("gradient.pfm", include_bytes!("../../../../assets/gradient.pfm")),
+    ];
 
     /// Name of the built-in picture that `path` means, if it means one.
     #[must_use]
