@@ -16,8 +16,9 @@ use crate::tile::{Simd, render_tile};
 
 /// Pixels along the side of a tile: small enough to share out evenly, large enough to be worth it.
 const TILE_SIZE: u32 = 16;
-/// How long a pass should take, so that progress shows and stopping is prompt.
-const PASS_S: f64 = 0.3;
+/// How long a pass should take. What is between passes, done by one thread, must not count beside it;
+/// stopping is prompt all the same, but loses the pass under way.
+const PASS_S: f64 = 1.0;
 /// Most threads that make sense to ask for.
 const MAX_THREADS: usize = 4096;
 
