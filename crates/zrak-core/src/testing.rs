@@ -310,26 +310,8 @@ pub(crate) const fn prim(kind: PrimKind, index: usize) -> PrimRef {
     PrimRef::new(kind, index as u32)
 }
 
-/// Quad with what follows from its edges, computed as its documentation says.
 pub(crate) fn quad(corner: Vec3, u: Vec3, v: Vec3) -> Quad {
-    let (du, dv) = (double(u), double(v));
-    let normal = cross(du, dv);
-    let area = length(normal);
-    let n = unit(normal);
-    Quad {
-        corner,
-        material: ANY_MATERIAL,
-        normal: single(n),
-        _pad0: 0,
-        alpha_axis: single(scaled(cross(dv, n), 1.0 / area)),
-        _pad1: 0,
-        beta_axis: single(scaled(cross(n, du), 1.0 / area)),
-        _pad2: 0,
-        u,
-        _pad3: 0,
-        v,
-        _pad4: 0,
-    }
+    Quad::new(corner, u, v, ANY_MATERIAL)
 }
 
 #[test]

@@ -43,18 +43,6 @@ fn single(v: Triple) -> Vec3 {
     vec3(x, y, z)
 }
 
-fn cross(a: Triple, b: Triple) -> Triple {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn scaled(v: Triple, s: f64) -> Triple {
-    v.map(|x| x * s)
-}
-
-fn dot(a: Triple, b: Triple) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
 impl Lowering<'_> {
     fn object(&mut self, object: &ObjectDesc, parent: &Transform) {
         match object {
@@ -197,29 +185,13 @@ impl Lowering<'_> {
 }
 
 fn quad(corner: Triple, u: Triple, v: Triple, material: MaterialRef, to_world: &Transform) -> Quad {
-    // What follows is exact for the rounded edges, which are the ones that are rendered.
-    let rounded = |v: Triple| v.map(|x| f64::from(x as f32));
-    let corner = rounded(to_world.point(corner));
-    let (u, v) = (rounded(to_world.vector(u)), rounded(to_world.vector(v)));
-    let normal = cross(u, v);
-    let area = dot(normal, normal).sqrt();
+    let (u, v) = (single(to_world.vector(u)), single(to_world.vector(v)));
+    let mut quad = Quad::new(single(to_world.point(corner)), u, v, material);
     // A reflection turns u x v around, but the side that shines is still the same one.
-    let side = if to_world.determinant() < 0.0 { -1.0 } else { 1.0 };
-    let unit = scaled(normal, 1.0 / area);
-    Quad {
-        corner: single(corner),
-        material,
-        normal: single(scaled(unit, side)),
-        _pad0: 0,
-        alpha_axis: single(scaled(cross(v, unit), 1.0 / area)),
-        _pad1: 0,
-        beta_axis: single(scaled(cross(unit, u), 1.0 / area)),
-        _pad2: 0,
-        u: single(u),
-        _pad3: 0,
-        v: single(v),
-        _pad4: 0,
+    if to_world.determinant() < 0.0 {
+        quad.normal = -quad.normal;
     }
+    quad
 }
 
 fn triangle(

@@ -46,7 +46,8 @@ fn hits_are_where_the_plane_is_crossed() {
         // Error of the crossing: roundings of coordinates, stretched by the slope.
         let error = 1e-6 * (length(o) + length(double(q.corner)) + back + size) / cos.abs();
         let height = area / length(double(q.u)).max(length(double(q.v)));
-        let margin = error / height + 2e-6;
+        let overlap = f64::from(q.alpha_overlap.max(q.beta_overlap));
+        let margin = error / height + overlap + 1e-6;
         let inside = |m: f64| (m..=1.0 - m).contains(&alpha) && (m..=1.0 - m).contains(&beta);
         match q.intersect(&ray) {
             Some(hit) => {
@@ -63,7 +64,8 @@ fn hits_are_where_the_plane_is_crossed() {
                 assert!(dot(double(i.n), n) > 1.0 - 1e-6, "the normal is u x v");
                 let [a, b] = i.uv.map(f64::from);
                 assert!((0.0..=1.0).contains(&a) && (0.0..=1.0).contains(&b));
-                assert!((a - alpha).abs() < margin + 2e-6 && (b - beta).abs() < margin + 2e-6);
+                let moved = margin + 2.0 * overlap;
+                assert!((a - alpha).abs() < moved && (b - beta).abs() < moved);
                 assert!(
                     length(sub(double(i.p), point(&q, a, b)))
                         < 1e-6 * (size + length(double(q.corner)))
