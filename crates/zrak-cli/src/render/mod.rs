@@ -31,7 +31,7 @@ Ctrl-C stops at once and writes the samples per pixel that are finished; a secon
 pub(crate) struct RenderArgs {
     /// Built-in scene (see `zrak scenes`) or path of a .toml file
     scene: PathBuf,
-    /// Picture to write, as .png, .jpg, .hdr, .exr or .pfm; may be repeated [default: <scene>.png]
+    /// Picture to write, as .png, .jpg, .hdr, .exr or .pfm; may be repeated [default: the scene's name, as .png]
     #[arg(long, short, value_name = "FILE")]
     output: Vec<PathBuf>,
     /// How radiance becomes the 8 bits of PNG and JPEG
