@@ -228,10 +228,8 @@ impl<T: Pod> DeviceBuffer<T> {
     pub(crate) fn new(len: usize) -> Result<Self> {
         let size = (len * size_of::<T>()).max(1);
         // SAFETY: the memory is written before it is read: by `upload` or `clear`.
-        let pointer = unsafe { result::malloc_sync(size) }.map_err(|error| {
-            let error = failed(&format!("take {} MiB of memory", size >> 20))(error);
-            BackendError::new(error.kind(), error.to_string())
-        })?;
+        let pointer = unsafe { result::malloc_sync(size) }
+            .map_err(failed(&format!("take {} MiB of memory", size >> 20)))?;
         Ok(Self { pointer, len, records: PhantomData })
     }
 

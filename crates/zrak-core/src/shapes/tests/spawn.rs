@@ -1,7 +1,7 @@
 //! Rays that leave a surface do not meet it again by rounding: at scales from 1e-3 to 1e5, near the
 //! origin and far from it, in every direction.
 
-use super::super::{Convex, Instance, Shape, intersect_primitive, surface_interaction};
+use super::super::{Convex, Instance, Shape, Sphere, intersect_primitive, surface_interaction};
 use super::boxes::{box3, random_box};
 use super::instance::{affine, inverse, random_map};
 use super::quad::random_quad;
@@ -44,19 +44,24 @@ fn ray_at(rng: &mut Rng, aim: D3, size: f64) -> Ray {
     Ray { o: single(sub(aim, scaled(d, back))), d: single(d), time: 0.0 }
 }
 
-/// Spheres from 1e-3 to 1e5, up to a thousand radii from the origin.
+/// A sphere from 1e-3 to 1e5, up to a thousand radii from the origin, and a point that a ray hits; none
+/// if the ray misses.
+fn point_on_a_sphere(rng: &mut Rng) -> Option<(Sphere, SurfaceInteraction)> {
+    let radius = rng.log_range(1e-3, 1e5);
+    let away = if rng.chance(0.3) { 0.0 } else { radius * rng.log_range(0.1, 1e3) };
+    let s = sphere(rng.in_cube(away), radius as f32);
+    let aim = add(double(s.center), double(rng.in_cube(radius)));
+    let ray = ray_at(rng, aim, radius);
+    let t = s.intersect(&ray)?;
+    Some((s, s.interaction(&ray, t)))
+}
+
 #[test]
 fn outside_of_a_sphere() {
     let mut rng = Rng::new(1);
     let mut n_cases = 0;
     while n_cases < 300_000 {
-        let radius = rng.log_range(1e-3, 1e5);
-        let away = if rng.chance(0.3) { 0.0 } else { radius * rng.log_range(0.1, 1e3) };
-        let s = sphere(rng.in_cube(away), radius as f32);
-        let aim = add(double(s.center), double(rng.in_cube(radius)));
-        let ray = ray_at(&mut rng, aim, radius);
-        let Some(t) = s.intersect(&ray) else { continue };
-        let i = s.interaction(&ray, t);
+        let Some((s, i)) = point_on_a_sphere(&mut rng) else { continue };
         n_cases += 1;
         let out = i.spawn(leaving(&mut rng, i.n, 1.0), 0.0);
         assert_eq!(s.intersect(&out), None, "{s:?} {i:?} {out:?}");
@@ -69,17 +74,11 @@ fn inside_of_a_sphere() {
     let mut rng = Rng::new(2);
     let mut n_cases = 0;
     while n_cases < 300_000 {
-        let radius = rng.log_range(1e-3, 1e5);
-        let away = if rng.chance(0.3) { 0.0 } else { radius * rng.log_range(0.1, 1e3) };
-        let s = sphere(rng.in_cube(away), radius as f32);
-        let aim = add(double(s.center), double(rng.in_cube(radius)));
-        let ray = ray_at(&mut rng, aim, radius);
-        let Some(t) = s.intersect(&ray) else { continue };
-        let i = s.interaction(&ray, t);
+        let Some((s, i)) = point_on_a_sphere(&mut rng) else { continue };
         n_cases += 1;
         let into = i.spawn(leaving(&mut rng, i.n, -1.0), 0.0);
         // The other end of the chord, never this one.
-        let chord = -2.0 * radius * dot(double(into.d), double(i.n));
+        let chord = -2.0 * f64::from(s.radius) * dot(double(into.d), double(i.n));
         let t = s.intersect(&into);
         assert!(t.is_some(), "lost inside: {s:?} {i:?} {into:?}");
         let t = f64::from(t.unwrap());

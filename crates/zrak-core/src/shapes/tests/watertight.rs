@@ -152,29 +152,7 @@ fn triangle_meshes_are_closed_from_outside() {
 
 /// A room of six walls, each of `n` x `n` quads, from corner `lo` with side `size`.
 fn room(lo: D3, size: f64, n: u32) -> TestScene {
-    let mut scene = TestScene::default();
-    let step = size / f64::from(n);
-    for axis in 0..3 {
-        for side in [0.0, 1.0] {
-            let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
-            for i in 0..n {
-                for j in 0..n {
-                    let at = |i: u32, j: u32| {
-                        let mut p = lo;
-                        p[axis] += side * size;
-                        p[b] += f64::from(i) * step;
-                        p[c] += f64::from(j) * step;
-                        // Corners are rounded once, and edges are exact differences of corners.
-                        double(single(p))
-                    };
-                    let corner = at(i, j);
-                    let (u, v) = (sub(at(i + 1, j), corner), sub(at(i, j + 1), corner));
-                    scene.quads.push(quad(single(corner), single(u), single(v)));
-                }
-            }
-        }
-    }
-    scene
+    turned_room(lo, size, n, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 }
 
 /// The same, turned about its corner before it is moved.
@@ -194,6 +172,7 @@ fn turned_room(lo: D3, size: f64, n: u32, axes: [D3; 3]) -> TestScene {
                                 scaled(axes[c], f64::from(j) * step),
                             ),
                         );
+                        // Corners are rounded once, and edges are exact differences of corners.
                         double(single(add(lo, place)))
                     };
                     let corner = at(i, j);
