@@ -24,12 +24,14 @@ pub fn scene(size: [u32; 2], sky: f64) -> SceneDesc {
             focus_distance: 5.0,
             shutter_open_s: 0.0,
             shutter_close_s: 1.0,
+            ..CameraDesc::default()
         },
         render: RenderDesc { samples_per_pixel: 1, max_depth: 50, seed: 1 },
         background: BackgroundDesc::Constant { color: [sky; 3] },
         textures: BTreeMap::new(),
         materials: BTreeMap::new(),
         objects: Vec::new(),
+        ..SceneDesc::default()
     }
 }
 

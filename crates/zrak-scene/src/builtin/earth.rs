@@ -16,5 +16,5 @@ pub(super) fn earth() -> SceneDesc {
 
 /// The map of the earth that is embedded in the program.
 pub(super) fn map() -> TextureDesc {
-    TextureDesc::Image { path: "builtin:earth.png".to_owned(), filter: ImageFilter::Bilinear }
+    TextureDesc::image("builtin:earth.png", ImageFilter::Bilinear)
 }

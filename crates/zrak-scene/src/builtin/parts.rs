@@ -21,9 +21,7 @@ pub(super) fn scene(
         camera,
         render: RenderDesc { samples_per_pixel, max_depth: 50, seed: 0 },
         background,
-        textures: Default::default(),
-        materials: Default::default(),
-        objects: Vec::new(),
+        ..SceneDesc::default()
     }
 }
 
@@ -45,6 +43,7 @@ pub(super) fn camera(
         focus_distance: 10.0,
         shutter_open_s: 0.0,
         shutter_close_s: 1.0,
+        ..CameraDesc::default()
     }
 }
 

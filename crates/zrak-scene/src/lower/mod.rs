@@ -74,6 +74,7 @@ fn globals(desc: &SceneDesc) -> Globals {
         BackgroundDesc::Gradient { bottom, top } => {
             Background { bottom: color(*bottom), top: color(*top) }
         }
+        _ => Background { bottom: color([0.0; 3]), top: color([0.0; 3]) },
     };
     Globals {
         camera: camera::lower(&desc.camera),

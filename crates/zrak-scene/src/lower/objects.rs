@@ -94,6 +94,10 @@ impl Lowering<'_> {
                 let index = self.arrays.media.len() as u32 - 1;
                 self.prims.push(PrimRef::new(PrimKind::Medium, index));
             }
+            ObjectDesc::Mesh { .. }
+            | ObjectDesc::Disk { .. }
+            | ObjectDesc::Cylinder { .. }
+            | ObjectDesc::Instance { .. } => {}
             ObjectDesc::Group { objects, transform } => {
                 let to_world = Transform::of_steps(transform).then(parent);
                 for object in objects {

@@ -119,7 +119,7 @@ impl<'a> Lowering<'a, '_> {
                 });
                 textured(TextureKind::Noise, self.arrays.noises.len() - 1, false)
             }
-            TextureDesc::Image { path, filter } => {
+            TextureDesc::Image { path, filter, .. } => {
                 let (base, limits) = (&self.options.base_dir, &self.options.image_limits);
                 match assets::read(path, base, limits) {
                     Ok(image) => self.image(&image, *filter),
@@ -131,6 +131,7 @@ impl<'a> Lowering<'a, '_> {
                     }
                 }
             }
+            _ => solid([0.0; 3]),
         };
         self.textures.insert(name, lowered);
         lowered
@@ -200,6 +201,7 @@ impl<'a> Lowering<'a, '_> {
                 self.arrays.diffuse_lights.push(light);
                 (MaterialKind::DiffuseLight, self.arrays.diffuse_lights.len(), needs_uv)
             }
+            _ => (MaterialKind::Lambertian, 1, false),
         };
         LoweredMaterial { handle: MaterialRef::new(kind, index as u32 - 1), needs_uv }
     }

@@ -35,12 +35,14 @@ fn scene(objects: Vec<ObjectDesc>) -> SceneDesc {
             focus_distance: 10.0,
             shutter_open_s: 0.0,
             shutter_close_s: 1.0,
+            ..CameraDesc::default()
         },
         render: RenderDesc::default(),
         background: BackgroundDesc::Constant { color: [1.0; 3] },
         textures: BTreeMap::new(),
         materials: BTreeMap::from(materials),
         objects,
+        ..SceneDesc::default()
     }
 }
 

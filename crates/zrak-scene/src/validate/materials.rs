@@ -31,6 +31,7 @@ pub(super) fn check(checker: &mut Checker<'_>) {
                     ColorDesc::Solid(color) => checker.radiance("color", *color),
                     ColorDesc::Texture(name) => textures::reference(checker, "color", name),
                 },
+                _ => checker.note("kind", "this kind of material is not rendered yet", None),
             });
         }
     });

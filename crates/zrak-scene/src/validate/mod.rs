@@ -132,6 +132,9 @@ fn background(checker: &mut Checker<'_>, background: &BackgroundDesc) {
             checker.radiance("bottom", bottom);
             checker.radiance("top", top);
         }
+        BackgroundDesc::Image { .. } | BackgroundDesc::Sky { .. } => {
+            checker.note("kind", "this kind of background is not rendered yet", None);
+        }
     }
 }
 

@@ -77,6 +77,12 @@ fn check_one(
                 }
             });
         }
+        ObjectDesc::Mesh { .. }
+        | ObjectDesc::Disk { .. }
+        | ObjectDesc::Cylinder { .. }
+        | ObjectDesc::Instance { .. } => {
+            checker.note("kind", "this kind of object is not rendered yet", None);
+        }
         ObjectDesc::Group { objects, transform } => {
             if n_groups >= GROUP_NESTING_MAX {
                 let message = format!("groups are nested more than {GROUP_NESTING_MAX} deep");

@@ -214,7 +214,7 @@ fn textures() {
             ("textures.noise.high[2]", "-1"),
         ],
     );
-    let image = TextureDesc::Image { path: String::new(), filter: ImageFilter::Nearest };
+    let image = TextureDesc::image(String::new(), ImageFilter::Nearest);
     check(insert("image", image), &[("textures.image.path", "empty")]);
     // What only lights use may be bright; what reflects may not, however deep it is nested.
     let too_bright = TextureDesc::Solid { color: [1.0, 1.0, 1.5] };

@@ -41,12 +41,13 @@ fn parameters(checker: &mut Checker<'_>, texture: &TextureDesc) {
             solid(checker, "low", *low);
             solid(checker, "high", *high);
         }
-        TextureDesc::Image { path, filter: _ } => {
+        TextureDesc::Image { path, .. } => {
             if path.is_empty() {
                 let help = "name a picture's file, relative to the scene file";
                 checker.note("path", "`path` is empty", Some(help));
             }
         }
+        _ => checker.note("kind", "this kind of texture is not rendered yet", None),
     }
 }
 
@@ -136,7 +137,7 @@ pub(super) fn colors(scene: &SceneDesc, name: &str) -> Vec<(KeyPath, Triple)> {
             Some(TextureDesc::Noise { low, high, .. }) => {
                 found.extend([(path("low"), *low), (path("high"), *high)]);
             }
-            Some(TextureDesc::Image { .. }) | None => {}
+            Some(_) | None => {}
         }
     }
     found

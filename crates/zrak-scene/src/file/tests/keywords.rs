@@ -16,7 +16,9 @@ fn check(schema: &Value) {
             "additionalProperties" if value.is_object() => check(value),
             "additionalProperties" => assert_eq!(value, &Value::Bool(false)),
             "minItems" => assert_eq!(Some(value), schema.get("maxItems")),
-            "format" => assert!(["double", "uint32", "uint64"].contains(&value.as_str().unwrap())),
+            "format" => {
+                assert!(["double", "float", "uint32", "uint64"].contains(&value.as_str().unwrap()))
+            }
             "minimum" => assert_eq!(value, 0, "only that of unsigned integers is checked"),
             _ => {}
         }

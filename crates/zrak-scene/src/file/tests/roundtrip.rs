@@ -131,7 +131,7 @@ fn texture() -> impl Strategy<Value = TextureDesc> {
                 high
             }
         ),
-        (name(), filter).prop_map(|(path, filter)| TextureDesc::Image { path, filter }),
+        (name(), filter).prop_map(|(path, filter)| TextureDesc::image(path, filter)),
     ]
 }
 
@@ -241,6 +241,7 @@ prop_compose! {
         CameraDesc {
             look_from, look_at, vup, vfov_deg, width, height,
             defocus_angle_deg, focus_distance, shutter_open_s, shutter_close_s,
+            ..CameraDesc::default()
         }
     }
 }
@@ -260,7 +261,7 @@ prop_compose! {
         objects in vec(object(), 0..4),
     ) -> SceneDesc {
         let render = RenderDesc { samples_per_pixel, max_depth, seed };
-        SceneDesc { format: 1, name, description, camera, render, background, textures, materials, objects }
+        SceneDesc { format: 1, name, description, camera, render, background, textures, materials, objects, ..SceneDesc::default() }
     }
 }
 

@@ -42,6 +42,7 @@ fn random(rng: &mut Rng) -> CameraDesc {
         focus_distance: rng.range(0.5, 20.0),
         shutter_open_s: 0.25,
         shutter_close_s: 0.75,
+        ..CameraDesc::default()
     }
 }
 

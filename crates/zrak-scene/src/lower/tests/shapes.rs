@@ -153,7 +153,7 @@ fn textures_turn_with_their_spheres() {
         let mut desc = scene(vec![sphere([0.0; 3], 1.0, steps)]);
         let path = "builtin:earth.png".to_owned();
         let filter = ImageFilter::Nearest;
-        desc.textures.insert("earth".to_owned(), TextureDesc::Image { path, filter });
+        desc.textures.insert("earth".to_owned(), TextureDesc::image(path, filter));
         let color = ColorDesc::Texture("earth".to_owned());
         desc.materials.insert("m".to_owned(), MaterialDesc::Lambertian { color });
         arena(&desc)

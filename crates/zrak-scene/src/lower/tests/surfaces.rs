@@ -96,7 +96,7 @@ fn the_built_in_map_is_there_and_decodes() {
     assert!(Assets::names().any(|name| name == "earth.png"));
     let mut desc = scene(vec![sphere("m")]);
     let path = "builtin:earth.png".to_owned();
-    let image = TextureDesc::Image { path, filter: ImageFilter::Bilinear };
+    let image = TextureDesc::image(path, ImageFilter::Bilinear);
     desc.textures.insert("earth".to_owned(), image);
     desc.materials.insert("m".to_owned(), MaterialDesc::Lambertian { color: texture("earth") });
     let arena = arena(&desc);
@@ -114,7 +114,7 @@ fn the_built_in_map_is_there_and_decodes() {
 fn missing_pictures_are_problems_with_their_place() {
     for path in ["no-such-file.png", "builtin:moon.png"] {
         let mut desc = scene(vec![sphere("m")]);
-        let image = TextureDesc::Image { path: path.to_owned(), filter: ImageFilter::Nearest };
+        let image = TextureDesc::image(path, ImageFilter::Nearest);
         desc.textures.insert("t".to_owned(), image);
         desc.materials.insert("m".to_owned(), MaterialDesc::Lambertian { color: texture("t") });
         let problems = match lower(&desc, &LowerOptions::new(env!("CARGO_MANIFEST_DIR"))) {

@@ -1,0 +1,5 @@
+//! Triangle meshes.
+
+mod mesh;
+
+pub use mesh::TriangleMesh;

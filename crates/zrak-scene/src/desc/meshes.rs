@@ -1,0 +1,40 @@
+//! Triangle meshes.
+
+use std::sync::Arc;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use zrak_mesh::TriangleMesh;
+
+/// A triangle mesh, by the file it is in or by its numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum MeshDesc {
+    /// PLY or OBJ file, which may be gzip-ed.
+    File {
+        /// The file, relative to the scene file.
+        path: String,
+        /// Whether to make smooth normals if the file has none, across edges of up to this angle.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        smooth_angle_deg: Option<f64>,
+    },
+    /// The numbers themselves.
+    Inline {
+        /// Positions of the vertices.
+        positions: Vec<[f32; 3]>,
+        /// Three indices of vertices for each triangle.
+        triangles: Vec<[u32; 3]>,
+        /// Normal at each vertex, or nothing.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        normals: Vec<[f32; 3]>,
+        /// Texture coordinates of each vertex, or nothing.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        uvs: Vec<[f32; 2]>,
+        /// Linear red, green, blue and alpha of each vertex, or nothing.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        colors: Vec<[f32; 4]>,
+    },
+    /// A mesh in memory, from an importer or a program; it is written as a file beside the scene.
+    #[serde(skip)]
+    Loaded(#[schemars(skip)] Arc<TriangleMesh>),
+}
