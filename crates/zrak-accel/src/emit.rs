@@ -24,6 +24,42 @@ pub fn build_trees(prims: &[(PrimRef, Bounds)]) -> Trees {
     Trees { nodes2: emit(&tree, prims), nodes8: emit(&tree, prims) }
 }
 
+impl Trees {
+    /// Adds a tree over primitives with their bounds; gives the indices of its roots in the nodes of
+    /// both widths.
+    pub fn append(&mut self, prims: &[(PrimRef, Bounds)]) -> [u32; 2] {
+        let tree = build_trees(prims);
+        let roots = [self.nodes2.len() as u32, self.nodes8.len() as u32];
+        shift(&mut self.nodes2, tree.nodes2, false);
+        shift(&mut self.nodes8, tree.nodes8, false);
+        roots
+    }
+
+    /// Adds a tree whose roots replace the first nodes.
+    pub fn set_root(&mut self, prims: &[(PrimRef, Bounds)]) {
+        let tree = build_trees(prims);
+        shift(&mut self.nodes2, tree.nodes2, true);
+        shift(&mut self.nodes8, tree.nodes8, true);
+    }
+}
+
+/// Appends the nodes of a tree, or all but the root, which becomes the first node.
+fn shift<const N: usize>(nodes: &mut Vec<Node<N>>, tree: Vec<Node<N>>, as_root: bool) {
+    let base = nodes.len() as u32 - u32::from(as_root);
+    for (i, mut node) in tree.into_iter().enumerate() {
+        for child in &mut node.children {
+            if *child != PrimRef::NONE && child.is_node() {
+                *child = PrimRef::new(PrimKind::Node, child.index() + base);
+            }
+        }
+        if i == 0 && as_root {
+            nodes[0] = node;
+        } else {
+            nodes.push(node);
+        }
+    }
+}
+
 /// Lays out the nodes of a wide tree, depth first.
 ///
 /// # Panics

@@ -129,14 +129,33 @@ impl<'a, T: Copy, const N: usize> Stack<'a, T, N> {
         self.len += 1;
     }
 
+    /// Number of entries.
+    #[inline(always)]
+    #[must_use]
+    pub const fn len(&self) -> u32 {
+        self.len
+    }
+
+    /// Whether there is no entry.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
     /// Takes the entry on top.
     #[inline(always)]
     pub fn pop(&mut self) -> Option<T> {
-        if self.len == 0 {
+        self.pop_above(0)
+    }
+
+    /// Takes the entry on top, if there are more than `base`.
+    #[inline(always)]
+    pub fn pop_above(&mut self, base: u32) -> Option<T> {
+        if self.len <= base {
             return None;
         }
         self.len -= 1;
-        // SAFETY: entries below `len` were written by `push`, and `len` was above 0.
+        // SAFETY: entries below `len` were written by `push`, and `len` was above `base`.
         Some(unsafe { self.entries.get_unchecked(self.len as usize).assume_init_read() })
     }
 }

@@ -10,7 +10,7 @@
 //! - `unsafe` lives in [`accessor`] alone.
 //!
 //! Reading order: [`scene`] (the data), [`ray`] and [`interaction`], [`shapes`], [`accel`],
-//! [`textures`], [`materials`], [`media`], [`sampler`], [`camera`], [`film`], and
+//! [`textures`], [`materials`], [`media`], [`lights`], [`sampler`], [`camera`], [`film`], and
 //! [`integrators`], which puts them together.
 
 #![cfg_attr(target_arch = "nvptx64", no_std, feature(core_intrinsics), allow(internal_features))]
@@ -22,6 +22,7 @@ pub mod film;
 pub mod integrators;
 pub mod interaction;
 pub mod launch;
+pub mod lights;
 pub mod materials;
 pub mod math;
 pub mod media;

@@ -34,6 +34,16 @@ pub enum BounceDim {
     DirectionV,
     /// Which of several lobes.
     Lobe,
+    /// Whether there is a hole.
+    Alpha,
+    /// Which of mixed materials.
+    Mix,
+    /// Which light.
+    Light,
+    /// Free flight in the medium that the path is in.
+    Flight,
+    /// Which channel the flight is drawn for.
+    Channel,
 }
 
 /// Number of dimensions that a bounce may use.
@@ -82,6 +92,13 @@ impl Sampler {
     #[must_use]
     pub fn at_bounce(&self, dim: BounceDim) -> f32 {
         self.draw((self.bounce + 1) * DIMS_PER_BOUNCE + dim as u32)
+    }
+
+    /// Sampler for a ray to a light, whose numbers have nothing to do with the path's own.
+    #[inline(always)]
+    #[must_use]
+    pub fn toward_light(&self) -> Self {
+        Self { key: [self.key[0] ^ 0x68bc_21eb, self.key[1]], bounce: self.bounce }
     }
 
     /// Number in [0, 1) for the free flight in the medium with this index, after the current bounce.

@@ -30,8 +30,30 @@ macro_rules! for_each_scene_array {
             boxes: $crate::shapes::Box3,
             /// Triangles.
             triangles: $crate::shapes::Triangle,
-            /// Shapes under an affine map.
+            /// Meshes.
+            meshes: $crate::shapes::Mesh,
+            /// Triangles of meshes.
+            mesh_triangles: $crate::shapes::MeshTriangle,
+            /// Positions of the vertices of meshes.
+            positions: $crate::math::Vec3,
+            /// Normals of the vertices of meshes.
+            normals: $crate::math::Vec3,
+            /// Texture coordinates of the vertices of meshes.
+            uvs: [f32; 2],
+            /// Tangents of the vertices of meshes, and their handedness.
+            tangents: [f32; 4],
+            /// Linear colours of the vertices of meshes, and alpha.
+            colors: [f32; 4],
+            /// Disks.
+            disks: $crate::shapes::Disk,
+            /// Cylinders.
+            cylinders: $crate::shapes::Cylinder,
+            /// Trees under affine maps.
             instances: $crate::shapes::Instance,
+            /// How instances move.
+            motions: $crate::shapes::Motion,
+            /// Maps of the boundaries of media.
+            placements: $crate::shapes::Placement,
             /// Media of constant density.
             media: $crate::media::ConstantMedium,
             /// Diffuse reflectors.
@@ -44,6 +66,14 @@ macro_rules! for_each_scene_array {
             isotropics: $crate::materials::Isotropic,
             /// Emitters.
             diffuse_lights: $crate::materials::DiffuseLight,
+            /// Mixed materials.
+            mixes: $crate::materials::Mix,
+            /// Materials with more about their surface.
+            surfaces: $crate::materials::Surface,
+            /// Media that surfaces bound.
+            homogeneous_media: $crate::media::HomogeneousMedium,
+            /// Lights without a surface.
+            lights: $crate::lights::Light,
             /// Checker patterns.
             checkers: $crate::textures::Checker,
             /// Noise patterns.
@@ -69,11 +99,24 @@ pub struct Kinds {
     pub materials: u32,
     /// Bit for each [`TextureKind`].
     pub textures: u32,
+    /// Bit for each [`Feature`].
+    pub features: u32,
+}
+
+/// What a scene may have besides primitives, materials and textures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Feature {
+    /// Lights without a surface.
+    Lights = 0,
+    /// Media that surfaces bound.
+    Media = 1,
 }
 
 impl Kinds {
     /// Everything.
-    pub const ALL: Self = Self { prims: u32::MAX, materials: u32::MAX, textures: u32::MAX };
+    pub const ALL: Self =
+        Self { prims: u32::MAX, materials: u32::MAX, textures: u32::MAX, features: u32::MAX };
 
     /// Spheres that stand still, with solid colours, and no light but the background.
     pub const PLAIN_SPHERES: Self = Self {
@@ -82,6 +125,7 @@ impl Kinds {
             | 1 << MaterialKind::Metal as u32
             | 1 << MaterialKind::Dielectric as u32,
         textures: 1 << TextureKind::Solid as u32,
+        features: 0,
     };
 
     /// Whether primitives of this kind may occur.
@@ -105,12 +149,20 @@ impl Kinds {
         self.textures >> kind as u32 & 1 != 0
     }
 
+    /// Whether scenes may have this.
+    #[inline(always)]
+    #[must_use]
+    pub const fn has_feature(&self, feature: Feature) -> bool {
+        self.features >> feature as u32 & 1 != 0
+    }
+
     /// Whether all of `other` are among these.
     #[must_use]
     pub const fn include(&self, other: &Self) -> bool {
         other.prims & !self.prims == 0
             && other.materials & !self.materials == 0
             && other.textures & !self.textures == 0
+            && other.features & !self.features == 0
     }
 }
 
@@ -125,6 +177,9 @@ impl SceneView<'_> {
             (self.quads.is_empty(), PrimKind::Quad),
             (self.boxes.is_empty(), PrimKind::Box),
             (self.triangles.is_empty(), PrimKind::Triangle),
+            (self.mesh_triangles.is_empty(), PrimKind::MeshTriangle),
+            (self.disks.is_empty(), PrimKind::Disk),
+            (self.cylinders.is_empty(), PrimKind::Cylinder),
             (self.instances.is_empty(), PrimKind::Instance),
             (self.media.is_empty(), PrimKind::Medium),
         ];
@@ -134,6 +189,9 @@ impl SceneView<'_> {
             (self.dielectrics.is_empty(), MaterialKind::Dielectric),
             (self.isotropics.is_empty(), MaterialKind::Isotropic),
             (self.diffuse_lights.is_empty(), MaterialKind::DiffuseLight),
+            (self.mixes.is_empty(), MaterialKind::Mix),
+            (self.surfaces.is_empty(), MaterialKind::Surface),
+            (false, MaterialKind::Interface),
         ];
         let textures = [
             (false, TextureKind::Solid),
@@ -141,7 +199,12 @@ impl SceneView<'_> {
             (self.noises.is_empty(), TextureKind::Noise),
             (self.images.is_empty(), TextureKind::Image),
         ];
+        let features = [
+            (self.lights.is_empty(), Feature::Lights),
+            (self.homogeneous_media.is_empty(), Feature::Media),
+        ];
         Kinds {
+            features: features.iter().map(|k| bit(k.0, k.1 as u32)).sum(),
             prims: prims.iter().map(|k| bit(k.0, k.1 as u32)).sum(),
             materials: materials.iter().map(|k| bit(k.0, k.1 as u32)).sum(),
             textures: textures.iter().map(|k| bit(k.0, k.1 as u32)).sum(),
@@ -196,8 +259,10 @@ pub struct Globals {
     pub seed_lo: u32,
     /// Upper half of the seed.
     pub seed_hi: u32,
+    /// Index of the medium that the camera is in, or [`crate::media::VACUUM`].
+    pub camera_medium: u32,
     /// Nothing.
-    pub _pad: [u32; 3],
+    pub _pad: [u32; 2],
 }
 
 const _: () = assert!(size_of::<Globals>().is_multiple_of(16));
@@ -302,6 +367,12 @@ tagged_handle! {
         Instance = 6,
         /// [`crate::media::ConstantMedium`].
         Medium = 7,
+        /// [`crate::shapes::MeshTriangle`].
+        MeshTriangle = 8,
+        /// [`crate::shapes::Disk`].
+        Disk = 9,
+        /// [`crate::shapes::Cylinder`].
+        Cylinder = 10,
     }
 }
 
@@ -330,6 +401,12 @@ tagged_handle! {
         Isotropic = 4,
         /// [`crate::materials::DiffuseLight`].
         DiffuseLight = 5,
+        /// [`crate::materials::Mix`].
+        Mix = 12,
+        /// Not there: light goes straight through.
+        Interface = 13,
+        /// [`crate::materials::Surface`].
+        Surface = 14,
     }
 }
 

@@ -1,13 +1,16 @@
 //! What the tests share: random numbers, statistics, vectors in `f64`, and scenes of a few records.
 
+use crate::accel::{Accel, BruteForce, Node};
 use crate::accessor::Array;
 use crate::camera::Camera;
-use crate::math::{Color, Vec3, vec3};
+use crate::interaction::Hit;
+use crate::math::{Affine, Color, Vec3, vec3};
 use crate::ray::Ray;
+use crate::sampler::Sampler;
 use crate::scene::{
     Background, Globals, MaterialKind, MaterialRef, PrimKind, PrimRef, SceneView, TextureRef,
 };
-use crate::shapes::Quad;
+use crate::shapes::{Instance, NO_MOTION, Placement, Quad, primitive_bounds};
 use crate::textures::ColorInput;
 
 /// Random numbers for tests: independent of the code under test. SplitMix64.
@@ -277,7 +280,9 @@ pub(crate) fn camera(width: u32, height: u32) -> Camera {
         lens_u: Vec3::ZERO,
         has_lens: 0,
         lens_v: Vec3::ZERO,
-        _pad: 0,
+        spread: 0.0,
+        forward: vec3(0.0, 0.0, -1.0),
+        projection: crate::camera::PROJECTION_PERSPECTIVE,
     }
 }
 
@@ -288,14 +293,43 @@ pub(crate) fn globals() -> Globals {
         max_depth: 1000,
         seed_lo: 0,
         seed_hi: 0,
-        _pad: [0; 3],
+        camera_medium: crate::media::VACUUM,
+        _pad: [0; 2],
     }
 }
 
 impl TestScene {
+    /// Places a primitive under a map, given with its inverse.
+    pub(crate) fn place(&mut self, target: PrimRef, map: Affine, back: Affine) -> PrimRef {
+        let bounds = primitive_bounds(&self.view(), target, [0.0, 1.0]);
+        let mut node = Node::<2>::EMPTY;
+        for axis in 0..3 {
+            node.lo[axis][0] = bounds.lo.to_array()[axis];
+            node.hi[axis][0] = bounds.hi.to_array()[axis];
+        }
+        node.children[0] = target;
+        self.nodes2.push(node);
+        self.instances.push(Instance {
+            placement: Placement { world_from_object: map, object_from_world: back },
+            root2: self.nodes2.len() as u32 - 1,
+            root8: 0,
+            motion: NO_MOTION,
+            _pad: 0,
+        });
+        prim(PrimKind::Instance, self.instances.len() - 1)
+    }
+
     pub(crate) fn view(&self) -> SceneView<'_> {
         self.view_with(globals())
     }
+}
+
+/// Where a ray hits one primitive or instance.
+pub(crate) fn hit_of(scene: &SceneView, prim: PrimRef, ray: &Ray) -> Option<Hit> {
+    let sampler = Sampler::new(0, 0, 0, 0);
+    let prims = [prim];
+    let all = BruteForce { prims: Array::new(&prims) };
+    all.closest_hit(scene, ray, &sampler, f32::INFINITY)
 }
 
 /// Input of one colour.

@@ -36,7 +36,9 @@ fn rays(scene: &SceneView) -> [(&'static str, Vec<(Ray, Sampler)>); 2] {
             let mut sampler = Sampler::new(0, x, y, 0);
             let ray = scene.globals.camera.ray(x, y, &sampler);
             primary.push((ray, sampler));
-            let Some(hit) = accel.closest_hit(scene, &ray, &sampler) else { continue };
+            let Some(hit) = accel.closest_hit(scene, &ray, &sampler, f32::INFINITY) else {
+                continue;
+            };
             if hit.prim.kind() == Some(PrimKind::Medium) {
                 continue;
             }
@@ -65,11 +67,19 @@ fn closest_hit(c: &mut Criterion) {
             };
             group.bench_function(format!("{kind}/bvh2"), |b| {
                 let accel = Bvh2 { nodes: view.nodes2 };
-                b.iter(|| trace(&|r, s| accel.closest_hit(black_box(&view), r, s).is_some()));
+                b.iter(|| {
+                    trace(&|r, s| {
+                        accel.closest_hit(black_box(&view), r, s, f32::INFINITY).is_some()
+                    })
+                });
             });
             group.bench_function(format!("{kind}/bvh8"), |b| {
                 let accel = Bvh8 { nodes: view.nodes8 };
-                b.iter(|| trace(&|r, s| accel.closest_hit(black_box(&view), r, s).is_some()));
+                b.iter(|| {
+                    trace(&|r, s| {
+                        accel.closest_hit(black_box(&view), r, s, f32::INFINITY).is_some()
+                    })
+                });
             });
         }
     }

@@ -138,7 +138,7 @@ fn all_ways_find_the_same_hit() {
         let view = arena.view();
         let mut prims = leaves(&view);
         let brute = |prims: &[PrimRef], ray: &Ray, sampler: &Sampler| {
-            BruteForce { prims: Array::new(prims) }.closest_hit(&view, ray, sampler)
+            BruteForce { prims: Array::new(prims) }.closest_hit(&view, ray, sampler, f32::INFINITY)
         };
         let (bvh2, bvh8) = (Bvh2 { nodes: view.nodes2 }, Bvh8 { nodes: view.nodes8 });
         let mut origin = Vec3::ZERO;
@@ -163,11 +163,12 @@ fn all_ways_find_the_same_hit() {
             // In any order.
             prims.reverse();
             assert_eq!(brute(&prims, &ray, &sampler), expected, "{ray:?}");
-            for hit in
-                [bvh2.closest_hit(&view, &ray, &sampler), bvh8.closest_hit(&view, &ray, &sampler)]
-            {
+            for hit in [
+                bvh2.closest_hit(&view, &ray, &sampler, f32::INFINITY),
+                bvh8.closest_hit(&view, &ray, &sampler, f32::INFINITY),
+            ] {
                 let bits = |hit: Option<zrak_core::interaction::Hit>| {
-                    hit.map(|hit| (hit.t.to_bits(), hit.prim))
+                    hit.map(|hit| (hit.t.to_bits(), hit.prim, hit.instance))
                 };
                 assert_eq!(bits(hit), bits(expected), "{ray:?}");
             }
@@ -178,7 +179,7 @@ fn all_ways_find_the_same_hit() {
                 origin = if hit.prim.kind() == Some(PrimKind::Medium) {
                     ray.at(hit.t)
                 } else {
-                    let s = surface_interaction(&view, hit.prim, &ray, hit.t);
+                    let s = surface_interaction(&view, &hit, &ray);
                     s.spawn(rng.direction(), 0.0).o
                 };
             }

@@ -41,10 +41,7 @@ fn everything(size: [u32; 2]) -> SceneDesc {
         low: [0.1; 3],
         high: [0.9; 3],
     };
-    let earth = TextureDesc::Image {
-        path: "builtin:earth.png".to_owned(),
-        filter: zrak_scene::desc::ImageFilter::Bilinear,
-    };
+    let earth = TextureDesc::image("builtin:earth.png", zrak_scene::desc::ImageFilter::Bilinear);
     for (name, texture) in [("checker", checker), ("marble", marble), ("earth", earth)] {
         desc.textures.insert(name.to_owned(), texture);
     }

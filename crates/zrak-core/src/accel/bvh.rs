@@ -5,13 +5,13 @@
 //! bounds of its primitive: the test that the definition of a hit asks for is the one that the tree
 //! makes anyway.
 
-use super::{Accel, NO_HIT, found, keep_closer};
+use super::{Accel, found, keep_closer, no_hit};
 use crate::accessor::{Array, Stack, StackMemory};
-use crate::interaction::Hit;
-use crate::math::{SLAB_SLACK, max, min, reciprocal_or_huge};
+use crate::interaction::{Hit, NO_INSTANCE};
+use crate::math::{SLAB_SLACK, Vec3, max, min, reciprocal_or_huge};
 use crate::ray::Ray;
 use crate::sampler::Sampler;
-use crate::scene::{PrimRef, SceneView};
+use crate::scene::{PrimKind, PrimRef, SceneView};
 
 /// Node of a tree with up to `N` children: structure of arrays, by axis and child.
 #[derive(Clone, Copy, Debug)]
@@ -46,9 +46,9 @@ impl<const N: usize> Node<N> {
 pub const MAX_DEPTH: usize = 48;
 
 /// Binary tree with the stack that it needs.
-pub type Bvh2<'a> = Bvh<'a, 2, MAX_DEPTH>;
+pub type Bvh2<'a> = Bvh<'a, 2, { 2 * MAX_DEPTH }>;
 /// Eight-wide tree with the stack that it needs.
-pub type Bvh8<'a> = Bvh<'a, 8, { 7 * MAX_DEPTH }>;
+pub type Bvh8<'a> = Bvh<'a, 8, { 14 * MAX_DEPTH }>;
 
 /// A tree with up to `N` children to a node and a stack of `S` entries; node 0 is its root.
 #[derive(Clone, Copy)]
@@ -62,11 +62,20 @@ type Entry = (f32, PrimRef);
 
 impl<const N: usize, const S: usize> Accel for Bvh<'_, N, S> {
     #[inline(always)]
-    fn closest_hit(&self, scene: &SceneView, ray: &Ray, sampler: &Sampler) -> Option<Hit> {
-        let inv_d = ray.d.map(reciprocal_or_huge);
+    fn closest_hit(
+        &self,
+        scene: &SceneView,
+        ray: &Ray,
+        sampler: &Sampler,
+        t_max: f32,
+    ) -> Option<Hit> {
+        let has_instances = scene.kinds.has_prim(PrimKind::Instance);
+        // The space that the traversal is in: the world, or that of an instance, whose entries lie on
+        // top of the stack's first `base`.
+        let mut space = Space::world(ray);
         let mut memory = StackMemory::<Entry, S>::new();
         let mut stack = Stack::new(&mut memory);
-        let mut best = NO_HIT;
+        let mut best = no_hit(t_max);
         let mut current: Option<Entry> = Some((0.0, PrimRef(0)));
         // Loops have a single exit each: see `render_pixel` about what compilers do otherwise.
         while let Some(entry) = current {
@@ -79,41 +88,86 @@ impl<const N: usize, const S: usize> Accel for Bvh<'_, N, S> {
                 let mut enter = [0.0; N];
                 let mut leave = [0.0; N];
                 for i in 0..N {
-                    let x0 = (node.lo[0][i] - ray.o.x) * inv_d.x;
-                    let x1 = (node.hi[0][i] - ray.o.x) * inv_d.x;
-                    let y0 = (node.lo[1][i] - ray.o.y) * inv_d.y;
-                    let y1 = (node.hi[1][i] - ray.o.y) * inv_d.y;
-                    let z0 = (node.lo[2][i] - ray.o.z) * inv_d.z;
-                    let z1 = (node.hi[2][i] - ray.o.z) * inv_d.z;
-                    enter[i] = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), 0.0));
+                    let (o, inv_d) = (space.ray.o, space.inv_d);
+                    let x0 = (node.lo[0][i] - o.x) * inv_d.x;
+                    let x1 = (node.hi[0][i] - o.x) * inv_d.x;
+                    let y0 = (node.lo[1][i] - o.y) * inv_d.y;
+                    let y1 = (node.hi[1][i] - o.y) * inv_d.y;
+                    let z0 = (node.lo[2][i] - o.z) * inv_d.z;
+                    let z1 = (node.hi[2][i] - o.z) * inv_d.z;
+                    let near = max(min(z0, z1), space.t_floor);
+                    enter[i] = max(max(min(x0, x1), min(y0, y1)), near);
                     // The slack keeps the test conservative; beyond the closest hit nothing counts.
                     leave[i] =
                         min(min(max(x0, x1), min(max(y0, y1), max(z0, z1))) * SLAB_SLACK, best.t);
                 }
                 leaf = next_child(&node, &enter, &leave, &mut stack);
                 if leaf.is_none() {
-                    leaf = pop(&mut stack, best.t);
+                    leaf = pop(&mut stack, space.base, best.t);
                 }
             }
             current = None;
             if let Some((t_enter, prim)) = leaf {
-                keep_closer(&mut best, scene, prim, ray, sampler, t_enter);
-                current = pop(&mut stack, best.t);
+                if has_instances && prim.kind() == Some(PrimKind::Instance) {
+                    let instance = scene.instances.get(prim.index());
+                    let local = instance.placement_at(scene, ray.time).object_ray(ray);
+                    space = Space {
+                        inv_d: local.d.map(reciprocal_or_huge),
+                        ray: local,
+                        t_floor: t_enter,
+                        instance: prim.index(),
+                        base: stack.len(),
+                    };
+                    let root = if N == 2 { instance.root2 } else { instance.root8 };
+                    current = Some((t_enter, PrimRef(root)));
+                } else {
+                    let placed = (prim, space.instance);
+                    keep_closer(&mut best, scene, placed, &space.ray, sampler, t_enter);
+                    current = pop(&mut stack, space.base, best.t);
+                }
+            }
+            if has_instances && current.is_none() && space.instance != NO_INSTANCE {
+                // Done with the instance.
+                space = Space::world(ray);
+                current = pop(&mut stack, 0, best.t);
             }
         }
         found(best)
     }
 }
 
-/// Takes the next entry that can still hold a closer hit.
+/// The space that a traversal is in.
+#[derive(Clone, Copy)]
+struct Space {
+    /// The ray in this space.
+    ray: Ray,
+    /// One over its direction.
+    inv_d: Vec3,
+    /// Where it enters the instance; nothing in there counts as closer.
+    t_floor: f32,
+    /// The instance, or [`NO_INSTANCE`] in the world.
+    instance: u32,
+    /// Number of entries of the stack that belong to the world.
+    base: u32,
+}
+
+impl Space {
+    #[inline(always)]
+    fn world(ray: &Ray) -> Self {
+        let inv_d = ray.d.map(reciprocal_or_huge);
+        Self { ray: *ray, inv_d, t_floor: 0.0, instance: NO_INSTANCE, base: 0 }
+    }
+}
+
+/// Takes the next entry above the first `base` that can still hold a closer hit.
 #[inline(always)]
-fn pop<const S: usize>(stack: &mut Stack<'_, Entry, S>, t_best: f32) -> Option<Entry> {
-    let mut entry = stack.pop();
+fn pop<const S: usize>(stack: &mut Stack<'_, Entry, S>, base: u32, t_best: f32) -> Option<Entry> {
+    let mut entry = stack.pop_above(base);
     // An equally close one with a smaller handle would count, so those are kept.
     while let Some((t_enter, _)) = entry
         && t_enter > t_best
     {
-        entry = stack.pop();
+        entry = stack.pop_above(base);
     }
     entry
 }

@@ -1,5 +1,6 @@
 //! Integrators: how light is gathered along paths.
 
+mod direct;
 mod naive;
 
 #[cfg(test)]

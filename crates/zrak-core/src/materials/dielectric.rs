@@ -75,7 +75,8 @@ impl Dielectric {
         sampler: &Sampler,
     ) -> Response {
         let front = surface.is_front(d);
-        let (n, eta) = if front { (surface.n, 1.0 / self.ior) } else { (-surface.n, self.ior) };
+        let eta = if front { 1.0 / self.ior } else { self.ior };
+        let n = surface.ns_toward(d);
         let cos_i = min(1.0, abs(dot(d, n)));
         let reflected = if self.fresnel == FRESNEL_SCHLICK {
             schlick(cos_i, eta)

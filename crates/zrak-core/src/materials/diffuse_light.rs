@@ -36,7 +36,7 @@ impl DiffuseLight {
         d: Vec3,
     ) -> Response {
         let emitted = if self.sides == SIDES_BOTH || surface.is_front(d) {
-            self.radiance.evaluate(scene, surface.p, surface.uv)
+            self.radiance.evaluate(scene, &surface.texture_context())
         } else {
             Color::BLACK
         };

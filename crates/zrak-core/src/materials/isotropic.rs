@@ -6,7 +6,7 @@ use super::Scatter;
 use crate::math::{Vec3, square_to_uniform_sphere};
 use crate::sampler::{BounceDim, Sampler};
 use crate::scene::SceneView;
-use crate::textures::ColorInput;
+use crate::textures::{ColorInput, TextureContext};
 
 /// Scatters into every direction alike: 1 / (4 pi) per steradian.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -26,6 +26,7 @@ impl Isotropic {
             sampler.at_bounce(BounceDim::DirectionV),
         );
         // Off by rounding; directions are of unit length.
-        Scatter { wi: wi.normalized(), attenuation: self.albedo.evaluate_share(scene, p, [0.0; 2]) }
+        let attenuation = self.albedo.evaluate_share(scene, &TextureContext::in_space(p));
+        Scatter { wi: wi.normalized(), attenuation }
     }
 }

@@ -1,10 +1,12 @@
 //! Ideal diffuse reflection, on both sides of the surface.
 
+use core::f32::consts::FRAC_1_PI;
+
 use bytemuck::{Pod, Zeroable};
 
 use super::Response;
 use crate::interaction::SurfaceInteraction;
-use crate::math::{Vec3, dot, square_to_uniform_sphere};
+use crate::math::{Color, Vec3, dot, max, square_to_uniform_sphere};
 use crate::sampler::{BounceDim, Sampler};
 use crate::scene::SceneView;
 use crate::textures::ColorInput;
@@ -26,14 +28,27 @@ impl Lambertian {
         d: Vec3,
         sampler: &Sampler,
     ) -> Response {
-        let n = if surface.is_front(d) { surface.n } else { -surface.n };
+        let n = surface.ns_toward(d);
         let wi = sample_cosine(
             n,
             sampler.at_bounce(BounceDim::DirectionU),
             sampler.at_bounce(BounceDim::DirectionV),
         );
         // The density cos / pi cancels the cosine and the 1 / pi of f.
-        Response::scattered(wi, self.albedo.evaluate_share(scene, surface.p, surface.uv))
+        Response::scattered(wi, self.albedo.evaluate_share(scene, &surface.texture_context()))
+    }
+
+    /// f |cos| of light from `wi`.
+    #[inline(always)]
+    pub(super) fn evaluate(
+        &self,
+        scene: &SceneView,
+        surface: &SurfaceInteraction,
+        d: Vec3,
+        wi: Vec3,
+    ) -> Color {
+        let cos = max(0.0, dot(surface.ns_toward(d), wi));
+        self.albedo.evaluate_share(scene, &surface.texture_context()) * (cos * FRAC_1_PI)
     }
 }
 

@@ -3,7 +3,7 @@
 //! # To add a material
 //! 1. Write its record and its `respond` in a file of its own here, with tests against a closed form.
 //! 2. Add its array to [`crate::for_each_scene_array!`] and its kind to [`MaterialKind`].
-//! 3. Add it to the `match` of [`respond`] and to `SceneView::kinds_in_use`.
+//! 3. Add it to the `match`es of [`respond`] and [`evaluate`] and to `SceneView::kinds_in_use`.
 //! 4. On the host: describe it (`zrak-scene`, `desc.rs`), validate it, lower it, and check its handles
 //!    (`arena/check.rs`).
 //!
@@ -14,6 +14,7 @@ mod diffuse_light;
 mod isotropic;
 mod lambertian;
 mod metal;
+mod surface;
 
 #[cfg(test)]
 mod tests;
@@ -25,6 +26,10 @@ pub use diffuse_light::{DiffuseLight, SIDES_BOTH, SIDES_FRONT};
 pub use isotropic::Isotropic;
 pub use lambertian::Lambertian;
 pub use metal::{Metal, reflect};
+pub use surface::{
+    Frame, Mix, Resolved, SURFACE_ALPHA, SURFACE_BUMP, SURFACE_CUTOFF, SURFACE_EMISSION,
+    SURFACE_MEDIUM, SURFACE_NORMAL_MAP, SURFACE_ONE_SIDED, Surface, medium_towards, resolve,
+};
 
 use crate::interaction::SurfaceInteraction;
 use crate::math::{Color, Vec3};
@@ -58,7 +63,25 @@ impl Response {
     }
 }
 
-/// Response of a surface to a path that arrives along `d`.
+/// f(wo, wi) |cos| for light that arrives along `wi` (towards where it comes from) and leaves against
+/// `d`; black for deltas. Both directions are unit vectors in world space.
+#[inline(always)]
+#[must_use]
+pub fn evaluate(scene: &SceneView, surface: &SurfaceInteraction, d: Vec3, wi: Vec3) -> Color {
+    let i = surface.material.index();
+    let has = |kind| scene.kinds.has_material(kind);
+    match surface.material.kind() {
+        Some(kind @ MaterialKind::Lambertian) if has(kind) => {
+            scene.lambertians.get(i).evaluate(scene, surface, d, wi)
+        }
+        Some(kind @ MaterialKind::Metal) if has(kind) => {
+            scene.metals.get(i).evaluate(scene, surface, d, wi)
+        }
+        _ => Color::BLACK,
+    }
+}
+
+/// Response of a surface, once resolved, to a path that arrives along `d`.
 #[inline(always)]
 #[must_use]
 pub fn respond(

@@ -13,12 +13,10 @@ use crate::testing::{D3, cross, double, unit};
 
 /// A surface through the origin.
 fn surface(n: Vec3, material: MaterialKind) -> SurfaceInteraction {
+    let material = MaterialRef::new(material, 0);
     SurfaceInteraction {
-        p: Vec3::ZERO,
-        p_error: Vec3::splat(1e-7),
-        n,
         uv: [0.5; 2],
-        material: MaterialRef::new(material, 0),
+        ..SurfaceInteraction::plain(Vec3::ZERO, Vec3::splat(1e-7), n, material)
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod affine;
 mod bounds;
+mod exp;
 mod hash;
 mod scalar;
 mod trig;

@@ -3,7 +3,7 @@
 //! To add a warp: write `square_to_x` with the measure and density in its docs, and a chi-squared
 //! test in `tests.rs`.
 
-use super::scalar::{max, sqrt};
+use super::scalar::{abs, max, sqrt};
 use super::trig::sin_cos_turns;
 use super::vec3::{Vec3, vec3};
 
@@ -15,6 +15,26 @@ pub fn square_to_uniform_sphere(u: f32, v: f32) -> Vec3 {
     let r = sqrt(max(0.0, 1.0 - z * z));
     let (s, c) = sin_cos_turns(v);
     vec3(r * c, r * s, z)
+}
+
+/// Direction on the unit sphere for a point of the unit square, so that equal areas stay equal
+/// (density 1 / (4 pi) per steradian): +z in the middle of the square, -z at its corners.
+///
+/// Clarberg, *Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD*, 2008.
+#[inline(always)]
+#[must_use]
+pub fn equal_area_square_to_sphere(x: f32, y: f32) -> Vec3 {
+    let (u, v) = (2.0 * x - 1.0, 2.0 * y - 1.0);
+    let (au, av) = (abs(u), abs(v));
+    let signed_distance = 1.0 - (au + av);
+    let r = 1.0 - abs(signed_distance);
+    // An eighth of a turn times the place along the side of the square of this radius.
+    let turns = if r == 0.0 { 0.125 } else { ((av - au) / r + 1.0) * 0.125 };
+    let (s, c) = sin_cos_turns(turns);
+    let height = 1.0 - r * r;
+    let z = if signed_distance < 0.0 { -height } else { height };
+    let reach = r * sqrt(max(0.0, 2.0 - r * r));
+    vec3(if u < 0.0 { -c } else { c } * reach, if v < 0.0 { -s } else { s } * reach, z)
 }
 
 /// Uniform point in the unit disk (density 1 / pi per area), as (x, y): polar coordinates.

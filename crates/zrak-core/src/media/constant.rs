@@ -13,25 +13,39 @@ use crate::math::{gamma, ln, max, min};
 use crate::ray::Ray;
 use crate::sampler::Sampler;
 use crate::scene::{MaterialRef, PrimRef, SceneView};
-use crate::shapes::{boundary_interval, boundary_surely_contains};
+use crate::shapes::{Placement, boundary_interval, boundary_surely_contains};
 
 /// Homogeneous medium inside a closed convex boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(16))]
 pub struct ConstantMedium {
-    /// A sphere, moving sphere, box, or instance of one.
+    /// A sphere, moving sphere or box.
     pub boundary: PrimRef,
     /// Its phase function.
     pub material: MaterialRef,
     /// Mean free path with the sign turned: -1 over the extinction coefficient.
     pub neg_mean_free_path: f32,
-    /// Nothing.
-    pub _pad: u32,
+    /// Index of the map that places the boundary, or [`NO_PLACEMENT`].
+    pub placement: u32,
 }
 
 const _: () = assert!(size_of::<ConstantMedium>() == 16);
 
+/// Index that stands for no map.
+pub const NO_PLACEMENT: u32 = u32::MAX;
+
 impl ConstantMedium {
+    /// The map that places the boundary, if there is one.
+    #[inline(always)]
+    #[must_use]
+    pub fn placement(&self, scene: &SceneView) -> Option<Placement> {
+        if self.placement == NO_PLACEMENT {
+            None
+        } else {
+            Some(scene.placements.get(self.placement))
+        }
+    }
+
     /// Parameter of the first collision of a unit-length ray, at least `t_enter`; `index` is the
     /// medium's own.
     #[inline(always)]
@@ -44,7 +58,8 @@ impl ConstantMedium {
         sampler: &Sampler,
         t_enter: f32,
     ) -> Option<f32> {
-        let [start, end] = boundary_interval(scene, self.boundary, ray)?;
+        let placement = self.placement(scene);
+        let [start, end] = boundary_interval(scene, self.boundary, placement, ray)?;
         let u = sampler.free_flight(index);
         let mut t = max(start + self.neg_mean_free_path * ln(1.0 - u), t_enter);
         if t >= end {
@@ -61,7 +76,8 @@ impl ConstantMedium {
         while searching {
             let p = ray.at(t);
             let p_error = (ray.o.abs() + (ray.d * t).abs()) * gamma(3);
-            inside = boundary_surely_contains(scene, self.boundary, p, p_error, ray.time);
+            inside =
+                boundary_surely_contains(scene, self.boundary, placement, p, p_error, ray.time);
             searching = !inside && t < middle;
             if searching {
                 step = 4.0 * max(step, p_error.max_component());

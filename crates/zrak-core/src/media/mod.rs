@@ -7,8 +7,12 @@
 //! has, never with a dimension that depends on the order of visiting.
 
 mod constant;
+mod homogeneous;
 
 #[cfg(test)]
 mod tests;
 
-pub use constant::ConstantMedium;
+pub use constant::{ConstantMedium, NO_PLACEMENT};
+pub use homogeneous::{
+    Flight, HomogeneousMedium, VACUUM, henyey_greenstein, sample_henyey_greenstein, tangents,
+};

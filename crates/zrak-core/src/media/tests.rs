@@ -1,6 +1,6 @@
 //! Media: lengths of free flights, and where events may be.
 
-use super::ConstantMedium;
+use super::{ConstantMedium, NO_PLACEMENT};
 use crate::accel::{Accel, BruteForce};
 use crate::accessor::Array;
 use crate::materials::Isotropic;
@@ -8,7 +8,7 @@ use crate::math::{Affine, Color, Vec3, vec3};
 use crate::ray::Ray;
 use crate::sampler::Sampler;
 use crate::scene::{MaterialKind, MaterialRef, PrimKind, PrimRef, SceneView};
-use crate::shapes::{Box3, Instance, Shape, Sphere, boundary_interval};
+use crate::shapes::{Box3, Placement, Shape, Sphere, boundary_interval};
 use crate::testing::{
     ANY_MATERIAL, D3, Rng, TestScene, add, double, kolmogorov, length, prim, scaled, single, solid,
     sub,
@@ -27,7 +27,7 @@ fn medium(boundary: PrimRef, density: f64) -> ConstantMedium {
         boundary,
         material: MaterialRef::new(MaterialKind::Isotropic, 0),
         neg_mean_free_path: (-1.0 / density) as f32,
-        _pad: 0,
+        placement: NO_PLACEMENT,
     }
 }
 
@@ -39,7 +39,7 @@ fn events(view: &SceneView, ray: &Ray, n_media: usize, n: u32, bounce: u32) -> V
         .filter_map(|i| {
             let mut sampler = Sampler::new(5, i % 64, 9, i / 64);
             (0..bounce).for_each(|_| sampler.next_bounce());
-            all.closest_hit(view, ray, &sampler).map(|hit| f64::from(hit.t))
+            all.closest_hit(view, ray, &sampler, f32::INFINITY).map(|hit| f64::from(hit.t))
         })
         .collect()
 }
@@ -123,20 +123,18 @@ fn random_boundary(rng: &mut Rng, scene: &mut TestScene, kind: u32) -> (PrimRef,
                 row[3] = t as f32;
                 row
             };
-            scene.instances.push(Instance {
+            scene.placements.push(Placement {
                 world_from_object: Affine { rows: [0, 1, 2].map(|i| row(i, stretch[i], c[i])) },
                 object_from_world: Affine {
                     rows: [0, 1, 2].map(|i| row(i, 1.0 / stretch[i], -c[i] / stretch[i])),
                 },
-                target: prim(PrimKind::Sphere, 0),
-                _pad: [0; 3],
             });
             let inside = move |p: D3| {
                 let q: D3 = std::array::from_fn(|i| (p[i] - c[i]) / stretch[i]);
                 // The matrix itself is rounded.
                 length(q) < 1.0 + 1e-6 * (1.0 + length(c) / size)
             };
-            (prim(PrimKind::Instance, 0), c, size, Box::new(inside))
+            (prim(PrimKind::Sphere, 0), c, size, Box::new(inside))
         }
     }
 }
@@ -153,8 +151,12 @@ fn events_are_inside_the_boundary() {
         // Thin, or so dense that most events are at the rim.
         let density = rng.log_range(0.1, 1e6) / size;
         scene.media.push(medium(boundary, density));
+        if !scene.placements.is_empty() {
+            scene.media[0].placement = 0;
+        }
         scene.isotropics.push(Isotropic { albedo: solid(Color::WHITE) });
         let view = scene.view();
+        let placement = scene.media[0].placement(&view);
         for _ in 0..50 {
             let aim = add(center, double(rng.in_cube(size)));
             let d = double(rng.direction());
@@ -163,13 +165,13 @@ fn events_are_inside_the_boundary() {
             let sampler = Sampler::new(0, rng.below(9), rng.below(9), rng.below(1 << 20));
             let prims = [prim(PrimKind::Medium, 0)];
             let all = BruteForce { prims: Array::new(&prims) };
-            let Some(hit) = all.closest_hit(&view, &ray, &sampler) else { continue };
+            let Some(hit) = all.closest_hit(&view, &ray, &sampler, f32::INFINITY) else { continue };
             n_events += 1;
             let p = ray.at(hit.t);
             assert!(inside(double(p)), "{p:?}: {ray:?} {hit:?}");
             // From there every ray crosses the boundary ahead, once.
             let next = Ray { o: p, d: rng.direction(), time: 0.0 };
-            let interval = boundary_interval(&view, boundary, &next);
+            let interval = boundary_interval(&view, boundary, placement, &next);
             assert!(interval.is_some_and(|[start, end]| start == 0.0 && end > 0.0), "{next:?}");
             if kind == 0 {
                 assert!(scene.spheres[0].intersect(&next).is_some());
@@ -204,7 +206,9 @@ fn no_event_lies_behind_a_wall_that_the_boundary_touches() {
             continue;
         }
         let ray = Ray { o, d, time: 0.0 };
-        let hit = all.closest_hit(&view, &ray, &Sampler::new(0, 0, 0, i)).expect("the wall");
+        let hit = all
+            .closest_hit(&view, &ray, &Sampler::new(0, 0, 0, i), f32::INFINITY)
+            .expect("the wall");
         if hit.prim.kind() == Some(PrimKind::Medium) {
             assert!(ray.at(hit.t).y > 0.0);
         } else {
@@ -225,7 +229,11 @@ fn dense_media_are_opaque() {
         // From a mean free path of a hundredth of the size to less than rounding.
         let density = rng.log_range(3e2, 1e9) / size;
         scene.media.push(medium(boundary, density));
+        if !scene.placements.is_empty() {
+            scene.media[0].placement = 0;
+        }
         let view = scene.view();
+        let placement = scene.media[0].placement(&view);
         for _ in 0..50 {
             // Straight at the middle half of it.
             let aim = add(center, double(rng.in_cube(0.05 * size)));
@@ -234,12 +242,17 @@ fn dense_media_are_opaque() {
             let ray = Ray { o: single(sub(aim, scaled(d, back * size))), d: single(d), time: 0.0 };
             let sampler = Sampler::new(1, rng.below(9), rng.below(9), rng.below(1 << 20));
             let prims = [prim(PrimKind::Medium, 0)];
-            let hit = BruteForce { prims: Array::new(&prims) }.closest_hit(&view, &ray, &sampler);
+            let hit = BruteForce { prims: Array::new(&prims) }.closest_hit(
+                &view,
+                &ray,
+                &sampler,
+                f32::INFINITY,
+            );
             n_rays += 1;
             let hit = hit.unwrap_or_else(|| panic!("light gets through: {density:e} {ray:?}"));
             assert!(inside(double(ray.at(hit.t))));
             // And near where it entered.
-            let [start, end] = boundary_interval(&view, boundary, &ray).unwrap();
+            let [start, end] = boundary_interval(&view, boundary, placement, &ray).unwrap();
             let depth = f64::from(hit.t - start);
             let rounding = 2e-5 * (f64::from(end) + length(double(ray.o)));
             assert!(depth < 18.0 / density + rounding, "{depth:e} {density:e} {rounding:e}");

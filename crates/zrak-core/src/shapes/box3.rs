@@ -96,7 +96,15 @@ impl Shape for Box3 {
             }
         };
         let p_error = p.abs() * gamma(3);
-        SurfaceInteraction { p, p_error, n, uv, material: self.material }
+        // Along u and v of the face, whose product is the outward normal.
+        let size = self.hi - self.lo;
+        let (dpdu, dpdv) = match axis {
+            0 => (vec3(0.0, 0.0, -n.x * size.z), vec3(0.0, size.y, 0.0)),
+            1 => (vec3(size.x, 0.0, 0.0), vec3(0.0, 0.0, -n.y * size.z)),
+            _ => (vec3(n.z * size.x, 0.0, 0.0), vec3(0.0, size.y, 0.0)),
+        };
+        let plain = SurfaceInteraction::plain(p, p_error, n, self.material);
+        SurfaceInteraction { uv, dpdu, dpdv, ..plain }
     }
 }
 

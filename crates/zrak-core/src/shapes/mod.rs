@@ -14,7 +14,10 @@
 //! [`Bounds`].
 
 mod box3;
+mod cylinder;
+mod disk;
 mod instance;
+mod mesh;
 mod quad;
 mod sphere;
 mod triangle;
@@ -23,12 +26,15 @@ mod triangle;
 mod tests;
 
 pub use box3::Box3;
-pub use instance::Instance;
+pub use cylinder::Cylinder;
+pub use disk::Disk;
+pub use instance::{Instance, Motion, NO_MOTION, Placement};
+pub use mesh::{MESH_COLORS, MESH_NORMALS, MESH_TANGENTS, MESH_UVS, Mesh, MeshTriangle};
 pub use quad::Quad;
 pub use sphere::{MovingSphere, NEEDS_UV, Sphere};
 pub use triangle::Triangle;
 
-use crate::interaction::SurfaceInteraction;
+use crate::interaction::{Hit, NO_INSTANCE, SurfaceInteraction};
 use crate::math::{Bounds, Vec3, max};
 use crate::ray::Ray;
 use crate::sampler::Sampler;
@@ -69,16 +75,24 @@ pub fn primitive_bounds(scene: &SceneView, prim: PrimRef, shutter: Shutter) -> B
         Some(PrimKind::Quad) => scene.quads.get(i).bounds(shutter),
         Some(PrimKind::Box) => scene.boxes.get(i).bounds(shutter),
         Some(PrimKind::Triangle) => scene.triangles.get(i).bounds(shutter),
-        Some(PrimKind::Instance) => {
-            let instance = scene.instances.get(i);
-            instance.bounds(primitive_bounds(scene, instance.target, shutter))
+        Some(PrimKind::MeshTriangle) => scene.mesh_triangles.get(i).bounds(scene),
+        Some(PrimKind::Disk) => scene.disks.get(i).bounds(shutter),
+        Some(PrimKind::Cylinder) => scene.cylinders.get(i).bounds(shutter),
+        Some(PrimKind::Instance) => scene.instances.get(i).bounds(scene, shutter),
+        Some(PrimKind::Medium) => {
+            let medium = scene.media.get(i);
+            let bounds = primitive_bounds(scene, medium.boundary, shutter);
+            match medium.placement(scene) {
+                Some(placement) => placement.bounds(bounds),
+                None => bounds,
+            }
         }
-        Some(PrimKind::Medium) => primitive_bounds(scene, scene.media.get(i).boundary, shutter),
         Some(PrimKind::Node) | None => Bounds::EMPTY,
     }
 }
 
-/// Parameter at which a ray that entered the bounds of `prim` at `t_enter` hits it.
+/// Parameter at which a ray that entered the bounds of `prim` at `t_enter` hits it. Both are in the
+/// space that the primitive is in; instances are left to the traversal.
 #[inline(always)]
 #[must_use]
 pub fn intersect_primitive(
@@ -98,9 +112,11 @@ pub fn intersect_primitive(
         Some(kind @ PrimKind::Quad) if has(kind) => scene.quads.get(i).intersect(ray),
         Some(kind @ PrimKind::Box) if has(kind) => scene.boxes.get(i).intersect(ray),
         Some(kind @ PrimKind::Triangle) if has(kind) => scene.triangles.get(i).intersect(ray),
-        Some(kind @ PrimKind::Instance) if has(kind) => {
-            scene.instances.get(i).intersect(scene, ray)
+        Some(kind @ PrimKind::MeshTriangle) if has(kind) => {
+            scene.mesh_triangles.get(i).intersect(scene, ray)
         }
+        Some(kind @ PrimKind::Disk) if has(kind) => scene.disks.get(i).intersect(ray),
+        Some(kind @ PrimKind::Cylinder) if has(kind) => scene.cylinders.get(i).intersect(ray),
         Some(kind @ PrimKind::Medium) if has(kind) => {
             scene.media.get(i).intersect(scene, i, ray, sampler, t_enter)
         }
@@ -109,15 +125,24 @@ pub fn intersect_primitive(
     t.map(|t| max(t, t_enter))
 }
 
-/// What is at the hit of a ray on the surface `prim`.
+/// What is where a ray hits a surface.
 #[inline(always)]
 #[must_use]
-pub fn surface_interaction(
-    scene: &SceneView,
-    prim: PrimRef,
-    ray: &Ray,
-    t: f32,
-) -> SurfaceInteraction {
+pub fn surface_interaction(scene: &SceneView, hit: &Hit, ray: &Ray) -> SurfaceInteraction {
+    if scene.kinds.has_prim(PrimKind::Instance) && hit.instance != NO_INSTANCE {
+        let instance = scene.instances.get(hit.instance);
+        let placement = instance.placement_at(scene, ray.time);
+        let local = local_interaction(scene, hit.prim, &placement.object_ray(ray), hit.t);
+        instance.to_world(&placement, &local)
+    } else {
+        local_interaction(scene, hit.prim, ray, hit.t)
+    }
+}
+
+/// What is at the hit of a ray on the surface `prim`, in the space of both.
+#[inline(always)]
+#[must_use]
+fn local_interaction(scene: &SceneView, prim: PrimRef, ray: &Ray, t: f32) -> SurfaceInteraction {
     let i = prim.index();
     let has = |kind| scene.kinds.has_prim(kind);
     match prim.kind() {
@@ -128,24 +153,25 @@ pub fn surface_interaction(
         Some(kind @ PrimKind::Quad) if has(kind) => scene.quads.get(i).interaction(ray, t),
         Some(kind @ PrimKind::Box) if has(kind) => scene.boxes.get(i).interaction(ray, t),
         Some(kind @ PrimKind::Triangle) if has(kind) => scene.triangles.get(i).interaction(ray, t),
-        Some(kind @ PrimKind::Instance) if has(kind) => {
-            scene.instances.get(i).interaction(scene, ray, t)
+        Some(kind @ PrimKind::MeshTriangle) if has(kind) => {
+            scene.mesh_triangles.get(i).interaction(scene, ray)
         }
+        Some(kind @ PrimKind::Disk) if has(kind) => scene.disks.get(i).interaction(ray, t),
+        Some(kind @ PrimKind::Cylinder) if has(kind) => scene.cylinders.get(i).interaction(ray, t),
         // Not surfaces: never asked for.
-        _ => SurfaceInteraction {
-            p: ray.at(t),
-            p_error: Vec3::ZERO,
-            n: Vec3::ZERO,
-            uv: [0.0; 2],
-            material: MaterialRef::default(),
-        },
+        _ => SurfaceInteraction::plain(ray.at(t), Vec3::ZERO, Vec3::ZERO, MaterialRef::default()),
     }
 }
 
 /// Part of the ray inside the boundary of a medium; see [`Convex`].
 #[inline(always)]
 #[must_use]
-pub fn boundary_interval(scene: &SceneView, boundary: PrimRef, ray: &Ray) -> Option<[f32; 2]> {
+pub fn boundary_interval(
+    scene: &SceneView,
+    boundary: PrimRef,
+    placement: Option<Placement>,
+    ray: &Ray,
+) -> Option<[f32; 2]> {
     let simple = |prim: PrimRef, ray: &Ray| {
         let i = prim.index();
         match prim.kind() {
@@ -155,11 +181,9 @@ pub fn boundary_interval(scene: &SceneView, boundary: PrimRef, ray: &Ray) -> Opt
             _ => None,
         }
     };
-    if boundary.kind() == Some(PrimKind::Instance) {
-        let instance = scene.instances.get(boundary.index());
-        simple(instance.target, &instance.object_ray(ray))
-    } else {
-        simple(boundary, ray)
+    match placement {
+        Some(placement) => simple(boundary, &placement.object_ray(ray)),
+        None => simple(boundary, ray),
     }
 }
 
@@ -169,6 +193,7 @@ pub fn boundary_interval(scene: &SceneView, boundary: PrimRef, ray: &Ray) -> Opt
 pub fn boundary_surely_contains(
     scene: &SceneView,
     boundary: PrimRef,
+    placement: Option<Placement>,
     p: Vec3,
     p_error: Vec3,
     time: f32,
@@ -184,12 +209,12 @@ pub fn boundary_surely_contains(
             _ => false,
         }
     };
-    if boundary.kind() == Some(PrimKind::Instance) {
-        let instance = scene.instances.get(boundary.index());
-        let to_object = &instance.object_from_world;
-        let error = to_object.abs_vector(p_error) + to_object.point_rounding(p);
-        simple(instance.target, to_object.point(p), error)
-    } else {
-        simple(boundary, p, p_error)
+    match placement {
+        Some(placement) => {
+            let to_object = &placement.object_from_world;
+            let error = to_object.abs_vector(p_error) + to_object.point_rounding(p);
+            simple(boundary, to_object.point(p), error)
+        }
+        None => simple(boundary, p, p_error),
     }
 }

@@ -128,11 +128,10 @@ impl Shape for Quad {
         let p = self.corner + au + bv;
         let p_error = (self.corner.abs() + au.abs() + bv.abs()) * gamma(10);
         SurfaceInteraction {
-            p,
-            p_error,
-            n: self.normal,
             uv: [alpha, beta],
-            material: self.material,
+            dpdu: self.u,
+            dpdv: self.v,
+            ..SurfaceInteraction::plain(p, p_error, self.normal, self.material)
         }
     }
 }

@@ -12,7 +12,7 @@ use bytemuck::{Pod, Zeroable};
 
 use super::{Convex, Shape, Shutter};
 use crate::interaction::SurfaceInteraction;
-use crate::math::{Bounds, Vec3, atan2, dot, gamma, sqrt};
+use crate::math::{Bounds, Vec3, atan2, dot, gamma, sqrt, vec3};
 use crate::ray::Ray;
 use crate::scene::MaterialRef;
 
@@ -142,8 +142,19 @@ impl Shape for Sphere {
         // The arm is off by the normalisation, the sum by one rounding, and the next ray's view
         // of the surface by five more operations.
         let p_error = arm.abs() * gamma(8) + (p.abs() + self.center.abs()) * gamma(1);
-        let uv = if self.flags & NEEDS_UV != 0 { sphere_uv(n) } else { [0.0; 2] };
-        SurfaceInteraction { p, p_error, n, uv, material: self.material }
+        let mut surface = SurfaceInteraction::plain(p, p_error, n, self.material);
+        if self.flags & NEEDS_UV != 0 {
+            surface.uv = sphere_uv(n);
+            // u turns about the y axis, v runs from pole to pole.
+            let around = vec3(n.z, 0.0, -n.x);
+            let sin = sqrt(n.x * n.x + n.z * n.z);
+            surface.dpdu = around * (self.radius * TAU);
+            if sin > 0.0 {
+                let up = vec3(-n.x * n.y / sin, sin, -n.z * n.y / sin);
+                surface.dpdv = up * (self.radius * PI);
+            }
+        }
+        surface
     }
 }
 

@@ -9,7 +9,7 @@ use bytemuck::{Pod, Zeroable};
 
 use super::{Shape, Shutter};
 use crate::interaction::SurfaceInteraction;
-use crate::math::{Bounds, Vec3, cross, gamma, max, min, vec3};
+use crate::math::{Bounds, Vec3, abs, cross, gamma, max, min, vec3};
 use crate::ray::Ray;
 use crate::scene::MaterialRef;
 
@@ -31,67 +31,111 @@ const _: () = assert!(size_of::<Triangle>() == 64);
 /// another triangle that meets it at an edge.
 const EDGE_INSET: f32 = 1.0 / 1_048_576.0;
 
-impl Triangle {
-    /// Parameter and barycentric coordinates of the intersection.
-    #[inline(always)]
-    fn hit(&self, ray: &Ray) -> Option<(f32, [f32; 3])> {
-        // Move the origin to zero and turn the axes so that the ray runs mostly along z.
-        let along = ray.d.abs();
-        let permute = |v: Vec3| {
-            if along.z >= along.x && along.z >= along.y {
-                v
-            } else if along.x >= along.y {
-                vec3(v.y, v.z, v.x)
-            } else {
-                vec3(v.z, v.x, v.y)
-            }
-        };
-        let d = permute(ray.d);
-        let [a, b, c] = self.vertices.map(|v| permute(v - ray.o));
-        // Shear so that it runs exactly along z.
-        let (sx, sy, sz) = (-d.x / d.z, -d.y / d.z, 1.0 / d.z);
-        let shear = |v: Vec3| (v.x + sx * v.z, v.y + sy * v.z);
-        let ((ax, ay), (bx, by), (cx, cy)) = (shear(a), shear(b), shear(c));
-        // Edge functions: signed areas that the origin spans with the edges.
-        let mut e0 = bx * cy - by * cx;
-        let mut e1 = cx * ay - cy * ax;
-        let mut e2 = ax * by - ay * bx;
-        if e0 == 0.0 || e1 == 0.0 || e2 == 0.0 {
-            let area = |px: f32, py: f32, qx: f32, qy: f32| {
-                (f64::from(px) * f64::from(qy) - f64::from(py) * f64::from(qx)) as f32
-            };
-            e0 = area(bx, by, cx, cy);
-            e1 = area(cx, cy, ax, ay);
-            e2 = area(ax, ay, bx, by);
-        }
-        if (e0 < 0.0 || e1 < 0.0 || e2 < 0.0) && (e0 > 0.0 || e1 > 0.0 || e2 > 0.0) {
-            return None;
-        }
-        let det = e0 + e1 + e2;
-        if det == 0.0 {
-            return None;
-        }
-        let (az, bz, cz) = (a.z * sz, b.z * sz, c.z * sz);
-        let inv_det = 1.0 / det;
-        let t = (e0 * az + e1 * bz + e2 * cz) * inv_det;
-        // Ahead of the origin for certain?
-        let largest = |x: f32, y: f32, z: f32| max(x.abs(), max(y.abs(), z.abs()));
-        let max_z = largest(az, bz, cz);
-        let max_x = largest(ax, bx, cx);
-        let max_y = largest(ay, by, cy);
-        let delta_z = gamma(3) * max_z;
-        let delta_x = gamma(5) * (max_x + max_z);
-        let delta_y = gamma(5) * (max_y + max_z);
-        let delta_e = 2.0 * (gamma(2) * max_x * max_y + delta_y * max_x + delta_x * max_y);
-        let max_e = largest(e0, e1, e2);
-        let delta_t =
-            3.0 * (gamma(3) * max_e * max_z + delta_e * max_z + delta_z * max_e) * inv_det.abs();
-        if t > delta_t && t < f32::INFINITY {
-            Some((t, [e0 * inv_det, e1 * inv_det, e2 * inv_det]))
+/// Parameter and barycentric coordinates of the intersection of a ray with a triangle.
+#[inline(always)]
+pub(super) fn hit_triangle(vertices: [Vec3; 3], ray: &Ray) -> Option<(f32, [f32; 3])> {
+    // Move the origin to zero and turn the axes so that the ray runs mostly along z.
+    let along = ray.d.abs();
+    let permute = |v: Vec3| {
+        if along.z >= along.x && along.z >= along.y {
+            v
+        } else if along.x >= along.y {
+            vec3(v.y, v.z, v.x)
         } else {
-            None
+            vec3(v.z, v.x, v.y)
         }
+    };
+    let d = permute(ray.d);
+    let [a, b, c] = vertices.map(|v| permute(v - ray.o));
+    // Shear so that it runs exactly along z.
+    let (sx, sy, sz) = (-d.x / d.z, -d.y / d.z, 1.0 / d.z);
+    let shear = |v: Vec3| (v.x + sx * v.z, v.y + sy * v.z);
+    let ((ax, ay), (bx, by), (cx, cy)) = (shear(a), shear(b), shear(c));
+    // Edge functions: signed areas that the origin spans with the edges.
+    let mut e0 = bx * cy - by * cx;
+    let mut e1 = cx * ay - cy * ax;
+    let mut e2 = ax * by - ay * bx;
+    if e0 == 0.0 || e1 == 0.0 || e2 == 0.0 {
+        let area = |px: f32, py: f32, qx: f32, qy: f32| {
+            (f64::from(px) * f64::from(qy) - f64::from(py) * f64::from(qx)) as f32
+        };
+        e0 = area(bx, by, cx, cy);
+        e1 = area(cx, cy, ax, ay);
+        e2 = area(ax, ay, bx, by);
     }
+    if (e0 < 0.0 || e1 < 0.0 || e2 < 0.0) && (e0 > 0.0 || e1 > 0.0 || e2 > 0.0) {
+        return None;
+    }
+    let det = e0 + e1 + e2;
+    if det == 0.0 {
+        return None;
+    }
+    let (az, bz, cz) = (a.z * sz, b.z * sz, c.z * sz);
+    let inv_det = 1.0 / det;
+    let t = (e0 * az + e1 * bz + e2 * cz) * inv_det;
+    // Ahead of the origin for certain?
+    let largest = |x: f32, y: f32, z: f32| max(x.abs(), max(y.abs(), z.abs()));
+    let max_z = largest(az, bz, cz);
+    let max_x = largest(ax, bx, cx);
+    let max_y = largest(ay, by, cy);
+    let delta_z = gamma(3) * max_z;
+    let delta_x = gamma(5) * (max_x + max_z);
+    let delta_y = gamma(5) * (max_y + max_z);
+    let delta_e = 2.0 * (gamma(2) * max_x * max_y + delta_y * max_x + delta_x * max_y);
+    let max_e = largest(e0, e1, e2);
+    let delta_t =
+        3.0 * (gamma(3) * max_e * max_z + delta_e * max_z + delta_z * max_e) * inv_det.abs();
+    if t > delta_t && t < f32::INFINITY {
+        Some((t, [e0 * inv_det, e1 * inv_det, e2 * inv_det]))
+    } else {
+        None
+    }
+}
+
+/// A point on a triangle.
+pub(super) struct Place {
+    pub(super) p: Vec3,
+    pub(super) p_error: Vec3,
+    /// Barycentric coordinates, inside by [`EDGE_INSET`].
+    pub(super) b: [f32; 3],
+}
+
+/// Where a ray that hits the triangle does so.
+#[inline(always)]
+pub(super) fn place_on_triangle(vertices: [Vec3; 3], ray: &Ray) -> Place {
+    let b = match hit_triangle(vertices, ray) {
+        Some((_, b)) => b,
+        None => [1.0 / 3.0; 3],
+    };
+    let inset = |x: f32| max(EDGE_INSET, min(x, 1.0 - 2.0 * EDGE_INSET));
+    let (b1, b2) = (inset(b[1]), inset(b[2]));
+    let b0 = max(EDGE_INSET, 1.0 - b1 - b2);
+    let [v0, v1, v2] = vertices;
+    let (p0, p1, p2) = (v0 * b0, v1 * b1, v2 * b2);
+    let p = p0 + p1 + p2;
+    let p_error = (p0.abs() + p1.abs() + p2.abs()) * gamma(8);
+    Place { p, p_error, b: [b0, b1, b2] }
+}
+
+/// Texture coordinates of the point with barycentric coordinates `b`.
+#[inline(always)]
+pub(super) fn blend_uv(uv: [[f32; 2]; 3], b: [f32; 3]) -> [f32; 2] {
+    let mix = |i: usize| uv[0][i] * b[0] + uv[1][i] * b[1] + uv[2][i] * b[2];
+    [mix(0), mix(1)]
+}
+
+/// Change of the point with u and v; zero where the texture coordinates span no area.
+#[inline(always)]
+pub(super) fn derivatives(vertices: [Vec3; 3], uv: [[f32; 2]; 3]) -> [Vec3; 2] {
+    let (dp02, dp12) = (vertices[0] - vertices[2], vertices[1] - vertices[2]);
+    let (du02, dv02) = (uv[0][0] - uv[2][0], uv[0][1] - uv[2][1]);
+    let (du12, dv12) = (uv[1][0] - uv[2][0], uv[1][1] - uv[2][1]);
+    let determinant = du02 * dv12 - dv02 * du12;
+    if abs(determinant) < 1e-30 {
+        return [Vec3::ZERO; 2];
+    }
+    let inverse = 1.0 / determinant;
+    [(dp02 * dv12 - dp12 * dv02) * inverse, (dp12 * du02 - dp02 * du12) * inverse]
 }
 
 impl Shape for Triangle {
@@ -102,24 +146,20 @@ impl Shape for Triangle {
 
     #[inline(always)]
     fn intersect(&self, ray: &Ray) -> Option<f32> {
-        self.hit(ray).map(|(t, _)| t)
+        hit_triangle(self.vertices, ray).map(|(t, _)| t)
     }
 
     #[inline(always)]
     fn interaction(&self, ray: &Ray, _: f32) -> SurfaceInteraction {
-        let b = match self.hit(ray) {
-            Some((_, b)) => b,
-            None => [1.0 / 3.0; 3],
-        };
-        let inset = |x: f32| max(EDGE_INSET, min(x, 1.0 - 2.0 * EDGE_INSET));
-        let (b1, b2) = (inset(b[1]), inset(b[2]));
-        let b0 = max(EDGE_INSET, 1.0 - b1 - b2);
+        let place = place_on_triangle(self.vertices, ray);
         let [v0, v1, v2] = self.vertices;
         let n = cross(v1 - v0, v2 - v0).normalized();
-        let (p0, p1, p2) = (v0 * b0, v1 * b1, v2 * b2);
-        let p = p0 + p1 + p2;
-        let p_error = (p0.abs() + p1.abs() + p2.abs()) * gamma(8);
-        let mix = |i: usize| self.uv[0][i] * b0 + self.uv[1][i] * b1 + self.uv[2][i] * b2;
-        SurfaceInteraction { p, p_error, n, uv: [mix(0), mix(1)], material: self.material }
+        let [dpdu, dpdv] = derivatives(self.vertices, self.uv);
+        SurfaceInteraction {
+            uv: blend_uv(self.uv, place.b),
+            dpdu,
+            dpdv,
+            ..SurfaceInteraction::plain(place.p, place.p_error, n, self.material)
+        }
     }
 }

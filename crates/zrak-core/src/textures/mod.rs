@@ -25,6 +25,61 @@ use bytemuck::{Pod, Zeroable};
 use crate::math::{Color, Vec3};
 use crate::scene::{SceneView, TextureKind, TextureRef};
 
+/// What textures look at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureContext {
+    /// The point, in world space.
+    pub p: Vec3,
+    /// Texture coordinates.
+    pub uv: [f32; 2],
+    /// How much u and v change over the ray's footprint.
+    pub duv: [f32; 2],
+    /// Colour of the mesh's vertices.
+    pub color: Color,
+    /// Alpha of the mesh's vertices.
+    pub alpha: f32,
+}
+
+impl TextureContext {
+    /// A point in space that is on no surface.
+    #[inline(always)]
+    #[must_use]
+    pub const fn in_space(p: Vec3) -> Self {
+        Self { p, uv: [0.0; 2], duv: [0.0; 2], color: Color::WHITE, alpha: 1.0 }
+    }
+}
+
+/// A number that may vary: solid, or the red channel of a texture.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct ScalarInput {
+    /// The number, if the texture is [`TextureKind::Solid`].
+    pub value: f32,
+    /// The texture.
+    pub texture: TextureRef,
+}
+
+const _: () = assert!(size_of::<ScalarInput>() == 8);
+
+impl ScalarInput {
+    /// The same number everywhere.
+    #[must_use]
+    pub const fn solid(value: f32) -> Self {
+        Self { value, texture: TextureRef(0) }
+    }
+
+    /// Number at a point.
+    #[inline(always)]
+    #[must_use]
+    pub fn evaluate(&self, scene: &SceneView, at: &TextureContext) -> f32 {
+        if self.texture.0 == 0 {
+            return self.value;
+        }
+        let solid = Color::grey(self.value);
+        ColorInput { solid, texture: self.texture }.evaluate(scene, at).r
+    }
+}
+
 /// A colour that may vary: solid, or a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(16))]
@@ -42,14 +97,14 @@ impl ColorInput {
     /// larger values does not make surfaces that shine.
     #[inline(always)]
     #[must_use]
-    pub fn evaluate_share(&self, scene: &SceneView, p: Vec3, uv: [f32; 2]) -> Color {
-        self.evaluate(scene, p, uv).to_share()
+    pub fn evaluate_share(&self, scene: &SceneView, at: &TextureContext) -> Color {
+        self.evaluate(scene, at).to_share()
     }
 
-    /// Colour at the world-space point `p` with texture coordinates `uv`.
+    /// Colour at a point.
     #[inline(always)]
     #[must_use]
-    pub fn evaluate(&self, scene: &SceneView, p: Vec3, uv: [f32; 2]) -> Color {
+    pub fn evaluate(&self, scene: &SceneView, at: &TextureContext) -> Color {
         let mut input = *self;
         let has = |kind| scene.kinds.has_texture(kind);
         // Checkers lead to other textures; the host made sure that they do not lead in a circle.
@@ -57,13 +112,13 @@ impl ColorInput {
             let i = input.texture.index();
             match input.texture.kind() {
                 Some(kind @ TextureKind::Checker) if has(kind) => {
-                    input = scene.checkers.get(i).pick(p)
+                    input = scene.checkers.get(i).pick(at.p)
                 }
                 Some(kind @ TextureKind::Noise) if has(kind) => {
-                    return scene.noises.get(i).evaluate(p);
+                    return scene.noises.get(i).evaluate(at.p);
                 }
                 Some(kind @ TextureKind::Image) if has(kind) => {
-                    return scene.images.get(i).evaluate(scene, uv);
+                    return scene.images.get(i).evaluate(scene, at.uv);
                 }
                 _ => return input.solid,
             }

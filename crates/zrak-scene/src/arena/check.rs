@@ -2,9 +2,11 @@
 
 use zrak_core::accel::{MAX_DEPTH, Node};
 use zrak_core::accessor::Array;
+use zrak_core::media::{NO_PLACEMENT, VACUUM};
 use zrak_core::scene::{
     MaterialKind, MaterialRef, PrimKind, PrimRef, SceneView, TextureKind, TextureRef,
 };
+use zrak_core::shapes::{Instance, MESH_COLORS, MESH_NORMALS, MESH_TANGENTS, MESH_UVS, NO_MOTION};
 use zrak_core::textures::{TEXELS_LINEAR, TEXELS_SRGB8};
 
 /// What is wrong with an arena.
@@ -33,8 +35,8 @@ fn records<'a, T: bytemuck::Pod>(array: &Array<'a, T>) -> impl Iterator<Item = T
 
 /// Checks every handle, link, image and tree.
 pub(super) fn check(scene: &SceneView) -> Check {
-    check_tree("nodes2", scene, &scene.nodes2)?;
-    check_tree("nodes8", scene, &scene.nodes8)?;
+    check_trees("nodes2", scene, &scene.nodes2, |instance| instance.root2)?;
+    check_trees("nodes8", scene, &scene.nodes8, |instance| instance.root8)?;
     for shape in records(&scene.spheres) {
         check_material(scene, shape.material)?;
     }
@@ -50,17 +52,30 @@ pub(super) fn check(scene: &SceneView) -> Check {
     for shape in records(&scene.triangles) {
         check_material(scene, shape.material)?;
     }
+    for disk in records(&scene.disks) {
+        check_material(scene, disk.material)?;
+    }
+    for cylinder in records(&scene.cylinders) {
+        check_material(scene, cylinder.material)?;
+    }
+    for mesh in records(&scene.meshes) {
+        check_material(scene, mesh.material)?;
+    }
+    check_meshes(scene)?;
+    check_surfaces(scene)?;
     for instance in records(&scene.instances) {
-        check_prim(scene, instance.target)?;
-        require(is_plain_convex(instance.target), || {
-            format!("an instance of primitive {:#x}", instance.target.0)
+        require(instance.motion == NO_MOTION || instance.motion < scene.motions.len(), || {
+            format!("no motion {}", instance.motion)
         })?;
     }
     for medium in records(&scene.media) {
         check_prim(scene, medium.boundary)?;
+        require(is_plain_convex(medium.boundary), || {
+            format!("a medium in primitive {:#x}", medium.boundary.0)
+        })?;
         require(
-            is_plain_convex(medium.boundary) || medium.boundary.kind() == Some(PrimKind::Instance),
-            || format!("a medium in primitive {:#x}", medium.boundary.0),
+            medium.placement == NO_PLACEMENT || medium.placement < scene.placements.len(),
+            || format!("no placement {}", medium.placement),
         )?;
         check_material(scene, medium.material)?;
         require(medium.material.kind() == Some(MaterialKind::Isotropic), || {
@@ -113,6 +128,9 @@ fn check_prim(scene: &SceneView, prim: PrimRef) -> Check {
         Some(PrimKind::Quad) => scene.quads.len(),
         Some(PrimKind::Box) => scene.boxes.len(),
         Some(PrimKind::Triangle) => scene.triangles.len(),
+        Some(PrimKind::MeshTriangle) => scene.mesh_triangles.len(),
+        Some(PrimKind::Disk) => scene.disks.len(),
+        Some(PrimKind::Cylinder) => scene.cylinders.len(),
         Some(PrimKind::Instance) => scene.instances.len(),
         Some(PrimKind::Medium) => scene.media.len(),
         Some(PrimKind::Node) | None => 0,
@@ -127,6 +145,9 @@ fn check_material(scene: &SceneView, material: MaterialRef) -> Check {
         Some(MaterialKind::Dielectric) => scene.dielectrics.len(),
         Some(MaterialKind::Isotropic) => scene.isotropics.len(),
         Some(MaterialKind::DiffuseLight) => scene.diffuse_lights.len(),
+        Some(MaterialKind::Mix) => scene.mixes.len(),
+        Some(MaterialKind::Interface) => 1,
+        Some(MaterialKind::Surface) => scene.surfaces.len(),
         None => 0,
     };
     require(material.index() < len, || format!("no material {:#x}", material.0))
@@ -143,11 +164,27 @@ fn check_texture(scene: &SceneView, texture: TextureRef) -> Check {
     require(texture.index() < len, || format!("no texture {:#x}", texture.0))
 }
 
-/// Checks that a tree is one: each node has one parent, and none is too deep.
-fn check_tree<const N: usize>(name: &str, scene: &SceneView, nodes: &Array<Node<N>>) -> Check {
+/// Checks that the trees are some: each node but a root has one parent, and none is too deep. The
+/// world's root is the first; the others are those of instances, in whose trees no instance and no
+/// medium is.
+fn check_trees<const N: usize>(
+    name: &str,
+    scene: &SceneView,
+    nodes: &Array<Node<N>>,
+    root: impl Fn(&Instance) -> u32,
+) -> Check {
     require(!nodes.is_empty(), || format!("{name} has no root"))?;
+    // Depth of each node, with the top bit set in the trees of instances; 0 for one without a parent.
+    const PLACED: u8 = 0x80;
     let mut depths = vec![0_u8; nodes.len() as usize];
     depths[0] = 1;
+    for instance in records(&scene.instances) {
+        let root = root(&instance);
+        require(root > 0 && root < nodes.len(), || {
+            format!("an instance of node {root} of {name}")
+        })?;
+        depths[root as usize] = 1 | PLACED;
+    }
     for i in 0..nodes.len() {
         let depth = depths[i as usize];
         require(depth > 0, || format!("node {i} of {name} has no parent before it"))?;
@@ -157,15 +194,85 @@ fn check_tree<const N: usize>(name: &str, scene: &SceneView, nodes: &Array<Node<
             }
             if !child.is_node() {
                 check_prim(scene, child)?;
+                let only_in_world =
+                    matches!(child.kind(), Some(PrimKind::Instance | PrimKind::Medium));
+                require(depth & PLACED == 0 || !only_in_world, || {
+                    format!("an instance or a medium in a tree of {name} that instances place")
+                })?;
                 continue;
             }
             let c = child.index() as usize;
             require(c < depths.len() && c > i as usize && depths[c] == 0, || {
                 format!("node {i} of {name} has node {c} as a child")
             })?;
-            require(usize::from(depth) < MAX_DEPTH, || format!("{name} is too deep"))?;
+            let too_deep = usize::from(depth & !PLACED) >= MAX_DEPTH;
+            require(!too_deep, || format!("{name} is too deep"))?;
             depths[c] = depth + 1;
         }
     }
     Ok(())
+}
+
+/// Checks that triangles lead to vertices, and vertices to all that their meshes say they have.
+fn check_meshes(scene: &SceneView) -> Check {
+    let n_vertices = scene.positions.len();
+    for triangle in records(&scene.mesh_triangles) {
+        require(triangle.mesh < scene.meshes.len(), || format!("no mesh {}", triangle.mesh))?;
+        let mesh = scene.meshes.get(triangle.mesh);
+        for v in triangle.vertices {
+            require(v < n_vertices, || format!("no vertex {v}"))?;
+            for (flag, offset, len) in [
+                (MESH_NORMALS, mesh.normal_offset, scene.normals.len()),
+                (MESH_UVS, mesh.uv_offset, scene.uvs.len()),
+                (MESH_TANGENTS, mesh.tangent_offset, scene.tangents.len()),
+                (MESH_COLORS, mesh.color_offset, scene.colors.len()),
+            ] {
+                require(mesh.flags & flag == 0 || v.wrapping_add(offset) < len, || {
+                    format!("vertex {v} lacks an attribute of its mesh")
+                })?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Checks materials that lead to other materials, to textures and to media.
+fn check_surfaces(scene: &SceneView) -> Check {
+    for (i, mix) in records(&scene.mixes).enumerate() {
+        check_texture(scene, mix.amount.texture)?;
+        for material in mix.materials {
+            check_material(scene, material)?;
+            let leads_on = match material.kind() {
+                Some(MaterialKind::Mix) => material.index() as usize >= i,
+                Some(MaterialKind::Surface) => true,
+                _ => false,
+            };
+            require(!leads_on, || format!("mix {i} leads to a later one or to a surface"))?;
+        }
+    }
+    for (i, surface) in records(&scene.surfaces).enumerate() {
+        check_material(scene, surface.base)?;
+        require(surface.base.kind() != Some(MaterialKind::Surface), || {
+            format!("surface {i} leads to a surface")
+        })?;
+        let textures = [
+            surface.emission.texture,
+            surface.alpha.texture,
+            surface.bump.texture,
+            surface.normal_map,
+        ];
+        for texture in textures {
+            check_texture(scene, texture)?;
+        }
+        for medium in [surface.inside, surface.outside] {
+            check_medium(scene, medium)?;
+        }
+    }
+    check_medium(scene, scene.globals.camera_medium)
+}
+
+fn check_medium(scene: &SceneView, medium: u32) -> Check {
+    require(medium == VACUUM || medium < scene.homogeneous_media.len(), || {
+        format!("no medium {medium}")
+    })
 }

@@ -2,15 +2,19 @@
 
 use zrak_core::accel::{MAX_DEPTH, Node};
 use zrak_core::camera::Camera;
-use zrak_core::materials::{Dielectric, DiffuseLight, Isotropic, Lambertian, Metal};
+use zrak_core::materials::{Dielectric, DiffuseLight, Isotropic, Lambertian, Metal, Mix, Surface};
 use zrak_core::math::{Affine, Color, Vec3};
 use zrak_core::media::ConstantMedium;
 use zrak_core::scene::{
     Background, Globals, MaterialKind, MaterialRef, PrimKind, PrimRef, TextureKind, TextureRef,
 };
-use zrak_core::shapes::{Box3, Instance, MovingSphere, Quad, Sphere, Triangle};
+use zrak_core::shapes::{
+    Box3, Cylinder, Disk, Instance, MESH_COLORS, MESH_NORMALS, MESH_TANGENTS, MESH_UVS, Mesh,
+    MeshTriangle, Motion, MovingSphere, Placement, Quad, Sphere, Triangle,
+};
 use zrak_core::textures::{
-    Checker, ColorInput, ImageTexture, Noise, PATTERN_NOISE, TEXELS_LINEAR, TEXELS_SRGB8,
+    Checker, ColorInput, ImageTexture, Noise, PATTERN_NOISE, ScalarInput, TEXELS_LINEAR,
+    TEXELS_SRGB8,
 };
 
 use super::{ARENA_ALIGNMENT, SceneArena, SceneArrays};
@@ -18,7 +22,15 @@ use super::{ARENA_ALIGNMENT, SceneArena, SceneArrays};
 fn globals() -> Globals {
     let camera: Camera = bytemuck::Zeroable::zeroed();
     let background = Background { bottom: Color::WHITE, top: Color::BLACK };
-    Globals { camera, background, max_depth: 7, seed_lo: 1, seed_hi: 2, _pad: [0; 3] }
+    Globals {
+        camera,
+        background,
+        max_depth: 7,
+        seed_lo: 1,
+        seed_hi: 2,
+        camera_medium: 0,
+        _pad: [0; 2],
+    }
 }
 
 fn input(kind: TextureKind, index: u32) -> ColorInput {
@@ -90,22 +102,57 @@ fn good() -> SceneArrays {
         uv: [[0.0; 2]; 3],
         material: material(MaterialKind::Dielectric),
     });
-    a.instances.push(Instance {
-        world_from_object: Affine::IDENTITY,
-        object_from_world: Affine::IDENTITY,
-        target: prim(PrimKind::Sphere),
-        _pad: [0; 3],
+    a.positions = vec![center; 4];
+    a.normals = vec![center; 3];
+    a.uvs = vec![[0.5; 2]; 3];
+    a.tangents = vec![[1.0; 4]; 3];
+    a.colors = vec![[1.0; 4]; 3];
+    // The mesh's vertices are 1 to 3, their attributes 0 to 2.
+    a.meshes.push(Mesh {
+        material: material(MaterialKind::Surface),
+        flags: MESH_NORMALS | MESH_UVS | MESH_TANGENTS | MESH_COLORS,
+        normal_offset: u32::MAX,
+        uv_offset: u32::MAX,
+        tangent_offset: u32::MAX,
+        color_offset: u32::MAX,
+        _pad: [0; 2],
     });
+    a.mesh_triangles.push(MeshTriangle { vertices: [1, 2, 3], mesh: 0 });
+    a.disks.push(Disk { material: lambertian, ..bytemuck::Zeroable::zeroed() });
+    a.cylinders.push(Cylinder {
+        material: material(MaterialKind::Interface),
+        ..bytemuck::Zeroable::zeroed()
+    });
+    let placement =
+        Placement { world_from_object: Affine::IDENTITY, object_from_world: Affine::IDENTITY };
+    a.placements.push(placement);
+    a.motions.push(Motion { start: Affine::IDENTITY, end: Affine::IDENTITY });
+    a.instances.push(Instance { placement, root2: 2, root8: 1, motion: 0, _pad: 0 });
     a.media.push(ConstantMedium {
-        boundary: prim(PrimKind::Instance),
+        boundary: prim(PrimKind::Sphere),
         material: material(MaterialKind::Isotropic),
         neg_mean_free_path: -1.0,
-        _pad: 0,
+        placement: 0,
     });
+    let amount = ScalarInput { value: 0.5, texture: input(TextureKind::Noise, 0).texture };
+    let two = [lambertian, material(MaterialKind::Metal)];
+    a.mixes.push(Mix { amount, materials: two });
+    a.mixes.push(Mix { amount, materials: [material(MaterialKind::Mix), lambertian] });
+    a.surfaces.push(Surface {
+        base: MaterialRef::new(MaterialKind::Mix, 1),
+        emission: radiance,
+        inside: 0,
+        ..Surface::default()
+    });
+    a.homogeneous_media.push(bytemuck::Zeroable::zeroed());
+    a.lights.push(bytemuck::Zeroable::zeroed());
     let kinds = [PrimKind::Sphere, PrimKind::Quad, PrimKind::Medium, PrimKind::Triangle];
     a.nodes8.push(root(&kinds.map(prim)));
     a.nodes2.push(root(&[PrimRef::new(PrimKind::Node, 1), prim(PrimKind::Box)]));
     a.nodes2.push(root(&[prim(PrimKind::MovingSphere), prim(PrimKind::Instance)]));
+    // The tree of the instance.
+    a.nodes2.push(root(&[prim(PrimKind::MeshTriangle)]));
+    a.nodes8.push(root(&[prim(PrimKind::Disk), prim(PrimKind::Cylinder)]));
     a
 }
 
@@ -215,6 +262,9 @@ fn primitives_out_of_range_are_refused() {
         PrimKind::Quad,
         PrimKind::Box,
         PrimKind::Triangle,
+        PrimKind::MeshTriangle,
+        PrimKind::Disk,
+        PrimKind::Cylinder,
         PrimKind::Instance,
         PrimKind::Medium,
     ] {
@@ -222,24 +272,63 @@ fn primitives_out_of_range_are_refused() {
         refused("no primitive", |a| a.nodes8[0].children[7] = PrimRef::new(kind, 1));
     }
     refused("no primitive", |a| a.nodes8[0].children[0] = PrimRef(0xf000_0000));
-    refused("no primitive", |a| a.instances[0].target = PrimRef::new(PrimKind::Sphere, 1));
     refused("no primitive", |a| a.media[0].boundary = PrimRef::new(PrimKind::Box, 1));
 }
 
 #[test]
-fn instances_and_boundaries_of_the_wrong_kind_are_refused() {
-    for kind in [PrimKind::Quad, PrimKind::Triangle, PrimKind::Instance, PrimKind::Medium] {
-        refused("an instance of", |a| a.instances[0].target = prim(kind));
-    }
-    for kind in [PrimKind::Quad, PrimKind::Triangle, PrimKind::Medium] {
+fn boundaries_of_the_wrong_kind_are_refused() {
+    for kind in [PrimKind::Quad, PrimKind::Triangle, PrimKind::Medium, PrimKind::Instance] {
         refused("a medium in", |a| a.media[0].boundary = prim(kind));
     }
     for kind in [PrimKind::Sphere, PrimKind::MovingSphere, PrimKind::Box] {
         let mut arrays = good();
         arrays.media[0].boundary = prim(kind);
-        arrays.instances[0].target = prim(kind);
         assert!(SceneArena::pack(globals(), &arrays).is_ok());
     }
+    refused("no placement", |a| a.media[0].placement = 1);
+}
+
+#[test]
+fn instances_that_lead_astray_are_refused() {
+    refused("an instance of node", |a| a.instances[0].root2 = 0);
+    refused("an instance of node", |a| a.instances[0].root2 = 3);
+    refused("an instance of node", |a| a.instances[0].root8 = 2);
+    refused("no motion", |a| a.instances[0].motion = 1);
+    // A node of the world's tree.
+    refused("as a child", |a| a.instances[0].root2 = 1);
+    // Nothing may be placed in what is placed, and media are told apart by one index each.
+    refused("in a tree", |a| a.nodes2[2].children[1] = prim(PrimKind::Instance));
+    refused("in a tree", |a| a.nodes8[1].children[1] = prim(PrimKind::Medium));
+}
+
+#[test]
+fn meshes_that_lead_astray_are_refused() {
+    refused("no mesh", |a| a.mesh_triangles[0].mesh = 1);
+    refused("no vertex", |a| a.mesh_triangles[0].vertices[2] = 4);
+    refused("lacks an attribute", |a| a.mesh_triangles[0].vertices[0] = 0);
+    refused("lacks an attribute", |a| a.meshes[0].normal_offset = 0);
+    refused("lacks an attribute", |a| a.meshes[0].uv_offset = 0);
+    refused("lacks an attribute", |a| a.meshes[0].tangent_offset = 0);
+    refused("lacks an attribute", |a| a.meshes[0].color_offset = 0);
+    refused("no material", |a| a.meshes[0].material = MaterialRef(0));
+    refused("no material", |a| a.disks[0].material = MaterialRef(0));
+    refused("no material", |a| a.cylinders[0].material = MaterialRef(0));
+}
+
+#[test]
+fn surfaces_and_mixes_that_lead_astray_are_refused() {
+    let surface = material(MaterialKind::Surface);
+    refused("leads to a surface", |a| a.surfaces[0].base = surface);
+    refused("leads to a later one", |a| a.mixes[0].materials[1] = surface);
+    refused("leads to a later one", |a| a.mixes[0].materials[0] = material(MaterialKind::Mix));
+    refused("no medium", |a| a.surfaces[0].inside = 1);
+    refused("no medium", |a| a.surfaces[0].outside = 7);
+    let beyond = input(TextureKind::Noise, 1).texture;
+    refused("no texture", |a| a.mixes[1].amount.texture = beyond);
+    refused("no texture", |a| a.surfaces[0].emission.texture = beyond);
+    refused("no texture", |a| a.surfaces[0].alpha.texture = beyond);
+    refused("no texture", |a| a.surfaces[0].bump.texture = beyond);
+    refused("no texture", |a| a.surfaces[0].normal_map = beyond);
 }
 
 #[test]
@@ -269,6 +358,9 @@ fn trees_that_are_too_deep_for_the_stack_are_refused() {
                 }
             })
             .collect();
+        // The tree of the instance comes last.
+        arrays.instances[0].root2 = n as u32;
+        arrays.nodes2.push(root(&[prim(PrimKind::Sphere)]));
         SceneArena::pack(globals(), &arrays).map(|_| ()).map_err(|e| e.to_string())
     };
     assert_eq!(chain(MAX_DEPTH), Ok(()));

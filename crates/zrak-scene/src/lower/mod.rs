@@ -5,6 +5,8 @@
 
 mod assets;
 mod camera;
+mod lights;
+mod meshes;
 mod objects;
 mod surfaces;
 mod transform;
@@ -14,8 +16,10 @@ mod tests;
 
 use std::path::{Path, PathBuf};
 
-use zrak_accel::build_trees;
-use zrak_core::scene::{Background, Globals};
+use zrak_accel::Trees;
+use zrak_core::accel::Node;
+use zrak_core::math::Bounds;
+use zrak_core::scene::{Background, Globals, PrimKind, PrimRef};
 use zrak_core::shapes::primitive_bounds;
 
 use crate::arena::{SceneArena, SceneArrays};
@@ -53,18 +57,39 @@ pub fn lower(desc: &SceneDesc, options: &LowerOptions) -> Result<SceneArena, Vec
     }
     let mut arrays = SceneArrays::default();
     let materials = surfaces::lower(desc, options, &mut arrays)?;
-    let prims = objects::lower(desc, &materials, &mut arrays);
+    lights::lower(desc, &mut arrays);
+    let mut meshes = meshes::Meshes::new(desc, options);
+    let objects = objects::lower(desc, &materials, &mut meshes, &mut arrays)?;
+    drop(meshes);
     let globals = globals(desc);
-    let shutter = [globals.camera.shutter_open_s, globals.camera.shutter_close_s];
-    let view = arrays.view(globals);
-    let bounded: Vec<_> =
-        prims.into_iter().map(|prim| (prim, primitive_bounds(&view, prim, shutter))).collect();
-    let trees = build_trees(&bounded);
-    arrays.nodes2 = trees.nodes2;
-    arrays.nodes8 = trees.nodes8;
+    build(objects, globals, &mut arrays);
     SceneArena::pack(globals, &arrays).map_err(|corrupt| {
         vec![Problem { path: KeyPath::default(), message: corrupt.to_string(), help: None }]
     })
+}
+
+/// Builds the trees: first those that instances place, then that of the world, whose boxes hold them.
+fn build(objects: objects::LoweredObjects, globals: Globals, arrays: &mut SceneArrays) {
+    let shutter = [globals.camera.shutter_open_s, globals.camera.shutter_close_s];
+    let bounded = |arrays: &SceneArrays, prims: Vec<PrimRef>| -> Vec<(PrimRef, Bounds)> {
+        let view = arrays.view(globals);
+        prims.into_iter().map(|prim| (prim, primitive_bounds(&view, prim, shutter))).collect()
+    };
+    // The world's root comes first.
+    let mut trees = Trees { nodes2: vec![Node::EMPTY], nodes8: vec![Node::EMPTY] };
+    let roots: Vec<[u32; 2]> =
+        objects.sets.into_iter().map(|prims| trees.append(&bounded(arrays, prims))).collect();
+    for (instance, &set) in arrays.instances.iter_mut().zip(&objects.set_of_instance) {
+        [instance.root2, instance.root8] = roots[set as usize];
+    }
+    arrays.nodes2 = std::mem::take(&mut trees.nodes2);
+    let mut prims = objects.world;
+    prims.extend((0..arrays.instances.len()).map(|i| PrimRef::new(PrimKind::Instance, i as u32)));
+    let world = bounded(arrays, prims);
+    trees.nodes2 = std::mem::take(&mut arrays.nodes2);
+    trees.set_root(&world);
+    arrays.nodes2 = trees.nodes2;
+    arrays.nodes8 = trees.nodes8;
 }
 
 fn globals(desc: &SceneDesc) -> Globals {
@@ -82,6 +107,7 @@ fn globals(desc: &SceneDesc) -> Globals {
         max_depth: desc.render.max_depth,
         seed_lo: desc.render.seed as u32,
         seed_hi: (desc.render.seed >> 32) as u32,
-        _pad: [0; 3],
+        camera_medium: surfaces::medium_index(desc, desc.camera.medium.as_deref()),
+        _pad: [0; 2],
     }
 }

@@ -1,35 +1,97 @@
-//! Shapes and media: brought into world space where their type allows it, put under an instance
-//! where not.
+//! Shapes, meshes, instances and media: brought into world space where their type allows it, put
+//! under an instance where not.
+//!
+//! The renderer knows two levels: a tree over the world, and trees under instances. Prototypes that
+//! place other prototypes are flattened: what is placed is a *part*, a set of primitives with a map,
+//! and placing a prototype places each of its parts under the product of the maps.
 
 use std::collections::HashMap;
+use std::rc::Rc;
 
 use zrak_core::math::{Vec3, vec3};
-use zrak_core::media::ConstantMedium;
+use zrak_core::media::{ConstantMedium, NO_PLACEMENT};
 use zrak_core::scene::{MaterialRef, PrimKind, PrimRef};
-use zrak_core::shapes::{Box3, Instance, MovingSphere, NEEDS_UV, Quad, Sphere, Triangle};
+use zrak_core::shapes::{
+    Box3, Cylinder, Disk, Instance, Motion, MovingSphere, NEEDS_UV, NO_MOTION, Placement, Quad,
+    Sphere, Triangle,
+};
 
+use super::meshes::Meshes;
 use super::surfaces::LoweredMaterial;
 use super::transform::Transform;
 use crate::arena::SceneArrays;
 use crate::desc::{BoundaryDesc, ObjectDesc, SceneDesc, Triple};
+use crate::validate::Problem;
 
-/// Lowers all objects; returns the primitives that rays are traced against.
+/// Most instances that a scene may have once its prototypes are flattened.
+pub(super) const INSTANCES_MAX: usize = 1 << 26;
+
+/// What the lowering of the objects leaves to be built: trees over sets of primitives.
+pub(super) struct LoweredObjects {
+    /// The primitives of the world, without its instances.
+    pub(super) world: Vec<PrimRef>,
+    /// Sets of primitives that instances place.
+    pub(super) sets: Vec<Vec<PrimRef>>,
+    /// For each instance of the arrays, the set that it places.
+    pub(super) set_of_instance: Vec<u32>,
+}
+
+/// A set of primitives, and where it stands.
+#[derive(Clone, Copy)]
+struct Part {
+    set: u32,
+    start: Transform,
+    /// Where it is at time 1, if it moves.
+    end: Option<Transform>,
+}
+
+/// What a list of objects comes to: primitives in its own space, and parts.
+#[derive(Default)]
+struct Content {
+    prims: Vec<PrimRef>,
+    parts: Vec<Part>,
+}
+
+/// Lowers all objects.
 pub(super) fn lower(
     desc: &SceneDesc,
     materials: &HashMap<&str, LoweredMaterial>,
+    meshes: &mut Meshes<'_>,
     arrays: &mut SceneArrays,
-) -> Vec<PrimRef> {
-    let mut lowering = Lowering { materials, arrays, prims: Vec::new() };
-    for object in &desc.objects {
-        lowering.object(object, &Transform::IDENTITY);
+) -> Result<LoweredObjects, Vec<Problem>> {
+    let mut lowering = Lowering {
+        desc,
+        materials,
+        meshes,
+        arrays,
+        sets: Vec::new(),
+        set_of_instance: Vec::new(),
+        prototypes: HashMap::new(),
+        mesh_sets: HashMap::new(),
+        problems: Vec::new(),
+    };
+    let content = lowering.content(&desc.objects);
+    for part in &content.parts {
+        lowering.place(part);
     }
-    lowering.prims
+    if !lowering.problems.is_empty() {
+        return Err(lowering.problems);
+    }
+    let Lowering { sets, set_of_instance, .. } = lowering;
+    Ok(LoweredObjects { world: content.prims, sets, set_of_instance })
 }
 
-struct Lowering<'a> {
-    materials: &'a HashMap<&'a str, LoweredMaterial>,
-    arrays: &'a mut SceneArrays,
-    prims: Vec<PrimRef>,
+struct Lowering<'a, 'b, 'm> {
+    desc: &'a SceneDesc,
+    materials: &'b HashMap<&'a str, LoweredMaterial>,
+    meshes: &'b mut Meshes<'m>,
+    arrays: &'b mut SceneArrays,
+    sets: Vec<Vec<PrimRef>>,
+    set_of_instance: Vec<u32>,
+    prototypes: HashMap<&'a str, Rc<Vec<Part>>>,
+    /// Sets of meshes that are placed more than once, by mesh and materials.
+    mesh_sets: HashMap<(&'a str, Vec<MaterialRef>, bool), u32>,
+    problems: Vec<Problem>,
 }
 
 /// Material of the boundaries of media: never looked at.
@@ -43,27 +105,36 @@ fn single(v: Triple) -> Vec3 {
     vec3(x, y, z)
 }
 
-impl Lowering<'_> {
-    fn object(&mut self, object: &ObjectDesc, parent: &Transform) {
+impl<'a> Lowering<'a, '_, '_> {
+    fn content(&mut self, objects: &'a [ObjectDesc]) -> Content {
+        let mut content = Content::default();
+        for object in objects {
+            self.object(object, &Transform::IDENTITY, &mut content);
+        }
+        content
+    }
+
+    fn object(&mut self, object: &'a ObjectDesc, parent: &Transform, content: &mut Content) {
         match object {
             ObjectDesc::Sphere { center, center_end, radius, material, transform } => {
                 let to_world = Transform::of_steps(transform).then(parent);
                 let material = self.materials[material.as_str()];
-                let prim = self.sphere(*center, *center_end, *radius, material, &to_world);
-                self.prims.push(prim);
+                let (prim, placed) =
+                    self.sphere(*center, *center_end, *radius, material, &to_world);
+                self.put(prim, placed.then_some(to_world), content);
             }
             ObjectDesc::Box { min, max, material, transform } => {
                 let to_world = Transform::of_steps(transform).then(parent);
                 let material = self.materials[material.as_str()];
-                let prim = self.box3(*min, *max, material, &to_world);
-                self.prims.push(prim);
+                let (prim, placed) = self.box3(*min, *max, material, &to_world);
+                self.put(prim, placed.then_some(to_world), content);
             }
             ObjectDesc::Quad { corner, u, v, material, transform } => {
                 let to_world = Transform::of_steps(transform).then(parent);
                 let material = self.materials[material.as_str()];
                 self.arrays.quads.push(quad(*corner, *u, *v, material.handle, &to_world));
                 let index = self.arrays.quads.len() as u32 - 1;
-                self.prims.push(PrimRef::new(PrimKind::Quad, index));
+                content.prims.push(PrimRef::new(PrimKind::Quad, index));
             }
             ObjectDesc::Triangle { vertices, uv, material, transform } => {
                 let to_world = Transform::of_steps(transform).then(parent);
@@ -71,42 +142,190 @@ impl Lowering<'_> {
                 let triangle = triangle(*vertices, *uv, material.handle, &to_world);
                 self.arrays.triangles.push(triangle);
                 let index = self.arrays.triangles.len() as u32 - 1;
-                self.prims.push(PrimRef::new(PrimKind::Triangle, index));
+                content.prims.push(PrimRef::new(PrimKind::Triangle, index));
+            }
+            ObjectDesc::Disk { height, radius, inner_radius, phi_max_deg, material, transform } => {
+                let to_world = Transform::of_steps(transform).then(parent);
+                let material = self.materials[material.as_str()].handle;
+                let sizes = [*height, *radius, *inner_radius, *phi_max_deg];
+                self.arrays.disks.push(disk(sizes, material, &to_world));
+                let index = self.arrays.disks.len() as u32 - 1;
+                content.prims.push(PrimRef::new(PrimKind::Disk, index));
+            }
+            ObjectDesc::Cylinder { radius, z_min, z_max, phi_max_deg, material, transform } => {
+                let to_world = Transform::of_steps(transform).then(parent);
+                self.arrays.cylinders.push(Cylinder {
+                    radius: *radius as f32,
+                    z_min: *z_min as f32,
+                    z_max: *z_max as f32,
+                    phi_max: phi_max_deg.to_radians() as f32,
+                    material: self.materials[material.as_str()].handle,
+                    _pad: [0; 3],
+                });
+                let index = self.arrays.cylinders.len() as u32 - 1;
+                let prim = PrimRef::new(PrimKind::Cylinder, index);
+                self.put(prim, (to_world != Transform::IDENTITY).then_some(to_world), content);
+            }
+            ObjectDesc::Mesh { mesh, material, group_materials, flip, transform } => {
+                let to_world = Transform::of_steps(transform).then(parent);
+                let materials: Vec<MaterialRef> = std::iter::once(material)
+                    .chain(group_materials)
+                    .map(|name| self.materials[name.as_str()].handle)
+                    .collect();
+                self.mesh(mesh, materials, *flip, &to_world, content);
+            }
+            ObjectDesc::Instance { prototype, transform, transform_end } => {
+                let start = Transform::of_steps(transform).then(parent);
+                let end = transform_end.as_ref().map(|t| Transform::of_steps(t).then(parent));
+                let parts = self.prototype(prototype);
+                if content.parts.len() + parts.len() > INSTANCES_MAX {
+                    self.too_many();
+                    return;
+                }
+                content.parts.extend(parts.iter().map(|part| Part {
+                    set: part.set,
+                    start: part.start.then(&start),
+                    end: match (part.end, end) {
+                        (None, None) => None,
+                        (inner, outer) => {
+                            Some(inner.unwrap_or(part.start).then(&outer.unwrap_or(start)))
+                        }
+                    },
+                }));
             }
             ObjectDesc::Medium { boundary, density, material, transform } => {
                 let to_world = Transform::of_steps(transform).then(parent);
-                let boundary = match boundary {
+                let (boundary, placement) = match boundary {
                     BoundaryDesc::Sphere { center, center_end, radius, transform } => {
                         let to_world = Transform::of_steps(transform).then(&to_world);
-                        self.sphere(*center, *center_end, *radius, NO_MATERIAL, &to_world)
+                        let (prim, placed) =
+                            self.sphere(*center, *center_end, *radius, NO_MATERIAL, &to_world);
+                        (prim, placed.then_some(to_world))
                     }
                     BoundaryDesc::Box { min, max, transform } => {
                         let to_world = Transform::of_steps(transform).then(&to_world);
-                        self.box3(*min, *max, NO_MATERIAL, &to_world)
+                        let (prim, placed) = self.box3(*min, *max, NO_MATERIAL, &to_world);
+                        (prim, placed.then_some(to_world))
                     }
                 };
+                let placement = placement.map_or(NO_PLACEMENT, |to_world| {
+                    self.arrays.placements.push(placement_of(&to_world));
+                    self.arrays.placements.len() as u32 - 1
+                });
                 self.arrays.media.push(ConstantMedium {
                     boundary,
                     material: self.materials[material.as_str()].handle,
                     neg_mean_free_path: (-1.0 / density) as f32,
-                    _pad: 0,
+                    placement,
                 });
                 let index = self.arrays.media.len() as u32 - 1;
-                self.prims.push(PrimRef::new(PrimKind::Medium, index));
+                content.prims.push(PrimRef::new(PrimKind::Medium, index));
             }
-            ObjectDesc::Mesh { .. }
-            | ObjectDesc::Disk { .. }
-            | ObjectDesc::Cylinder { .. }
-            | ObjectDesc::Instance { .. } => {}
             ObjectDesc::Group { objects, transform } => {
                 let to_world = Transform::of_steps(transform).then(parent);
                 for object in objects {
-                    self.object(object, &to_world);
+                    self.object(object, &to_world, content);
                 }
             }
         }
     }
 
+    /// Adds a primitive: as it is, or under a map as a part of its own.
+    fn put(&mut self, prim: PrimRef, map: Option<Transform>, content: &mut Content) {
+        match map {
+            None => content.prims.push(prim),
+            Some(start) => {
+                self.sets.push(vec![prim]);
+                let set = self.sets.len() as u32 - 1;
+                content.parts.push(Part { set, start, end: None });
+            }
+        }
+    }
+
+    fn mesh(
+        &mut self,
+        name: &'a str,
+        materials: Vec<MaterialRef>,
+        flip: bool,
+        to_world: &Transform,
+        content: &mut Content,
+    ) {
+        if !self.meshes.is_shared(name) {
+            match self.meshes.add(name, &materials, flip, to_world, self.arrays) {
+                Ok(prims) => content.prims.extend(prims),
+                Err(problem) => self.problems.push(problem),
+            }
+            return;
+        }
+        let key = (name, materials, flip);
+        let set = match self.mesh_sets.get(&key) {
+            Some(&set) => set,
+            None => {
+                let identity = Transform::IDENTITY;
+                match self.meshes.add(name, &key.1, flip, &identity, self.arrays) {
+                    Ok(prims) => self.sets.push(prims.collect()),
+                    Err(problem) => {
+                        self.problems.push(problem);
+                        return;
+                    }
+                }
+                let set = self.sets.len() as u32 - 1;
+                self.mesh_sets.insert(key, set);
+                set
+            }
+        };
+        content.parts.push(Part { set, start: *to_world, end: None });
+    }
+
+    /// The parts of a prototype, lowered when it is first asked for. Validation has made sure that it
+    /// exists and does not contain itself.
+    fn prototype(&mut self, name: &'a str) -> Rc<Vec<Part>> {
+        if let Some(done) = self.prototypes.get(name) {
+            return Rc::clone(done);
+        }
+        let desc = self.desc;
+        let mut content = self.content(&desc.prototypes[name]);
+        if !content.prims.is_empty() {
+            self.sets.push(content.prims);
+            let set = self.sets.len() as u32 - 1;
+            content.parts.push(Part { set, start: Transform::IDENTITY, end: None });
+        }
+        let parts = Rc::new(content.parts);
+        self.prototypes.insert(name, Rc::clone(&parts));
+        parts
+    }
+
+    fn too_many(&mut self) {
+        let message = format!(
+            "the scene's prototypes come to more than {INSTANCES_MAX} instances once they are placed"
+        );
+        if self.problems.iter().all(|p| p.message != message) {
+            let help = Some("place fewer of those that contain others".to_owned());
+            self.problems.push(Problem { path: Default::default(), message, help });
+        }
+    }
+
+    /// Makes an instance of a part.
+    fn place(&mut self, part: &Part) {
+        let motion = match part.end {
+            Some(end) if end != part.start => {
+                let motion = Motion { start: part.start.to_affine(), end: end.to_affine() };
+                self.arrays.motions.push(motion);
+                self.arrays.motions.len() as u32 - 1
+            }
+            _ => NO_MOTION,
+        };
+        self.arrays.instances.push(Instance {
+            placement: placement_of(&part.start),
+            root2: 0,
+            root8: 0,
+            motion,
+            _pad: 0,
+        });
+        self.set_of_instance.push(part.set);
+    }
+
+    /// The primitive, and whether it must be placed by the map; so does the next.
     fn sphere(
         &mut self,
         center: Triple,
@@ -114,7 +333,7 @@ impl Lowering<'_> {
         radius: f64,
         material: LoweredMaterial,
         to_world: &Transform,
-    ) -> PrimRef {
+    ) -> (PrimRef, bool) {
         // A turned sphere is the same sphere, unless its texture turns with it.
         let scale =
             to_world.uniform_scale().filter(|_| !material.needs_uv || to_world.keeps_axes());
@@ -149,11 +368,7 @@ impl Lowering<'_> {
                 PrimRef::new(PrimKind::MovingSphere, index)
             }
         };
-        if to_world.uniform_scale().is_some() && place == *to_world {
-            prim
-        } else {
-            self.instance(prim, to_world)
-        }
+        (prim, !(to_world.uniform_scale().is_some() && place == *to_world))
     }
 
     fn box3(
@@ -162,7 +377,7 @@ impl Lowering<'_> {
         max: Triple,
         material: LoweredMaterial,
         to_world: &Transform,
-    ) -> PrimRef {
+    ) -> (PrimRef, bool) {
         let is_plain = to_world.keeps_axes();
         let place = if is_plain { *to_world } else { Transform::IDENTITY };
         self.arrays.boxes.push(Box3 {
@@ -171,21 +386,14 @@ impl Lowering<'_> {
             hi: single(place.point(max)),
             _pad: 0,
         });
-        let prim = PrimRef::new(PrimKind::Box, self.arrays.boxes.len() as u32 - 1);
-        if is_plain { prim } else { self.instance(prim, to_world) }
+        (PrimRef::new(PrimKind::Box, self.arrays.boxes.len() as u32 - 1), !is_plain)
     }
+}
 
-    fn instance(&mut self, target: PrimRef, to_world: &Transform) -> PrimRef {
-        // Validation refuses maps that cannot be inverted.
-        let back = to_world.inverse().unwrap_or(Transform::IDENTITY);
-        self.arrays.instances.push(Instance {
-            world_from_object: to_world.to_affine(),
-            object_from_world: back.to_affine(),
-            target,
-            _pad: [0; 3],
-        });
-        PrimRef::new(PrimKind::Instance, self.arrays.instances.len() as u32 - 1)
-    }
+fn placement_of(to_world: &Transform) -> Placement {
+    // Validation refuses maps that cannot be inverted.
+    let back = to_world.inverse().unwrap_or(Transform::IDENTITY);
+    Placement { world_from_object: to_world.to_affine(), object_from_world: back.to_affine() }
 }
 
 fn quad(corner: Triple, u: Triple, v: Triple, material: MaterialRef, to_world: &Transform) -> Quad {
@@ -212,4 +420,36 @@ fn triangle(
         uv.swap(1, 2);
     }
     Triangle { vertices, uv, material }
+}
+
+fn disk(
+    [height, radius, inner_radius, phi_max_deg]: [f64; 4],
+    material: MaterialRef,
+    to_world: &Transform,
+) -> Disk {
+    let scaled = |a: Triple, s: f64| a.map(|x| x * s);
+    let dot = |a: Triple, b: Triple| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let cross = |a: Triple, b: Triple| {
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    };
+    let u = to_world.vector([radius, 0.0, 0.0]);
+    let v = to_world.vector([0.0, radius, 0.0]);
+    let across = cross(u, v);
+    let area = dot(across, across).sqrt();
+    let n = scaled(across, 1.0 / area);
+    let side = if to_world.determinant() < 0.0 { -1.0 } else { 1.0 };
+    Disk {
+        center: single(to_world.point([0.0, 0.0, height])),
+        material,
+        normal: single(scaled(n, side)),
+        inner: (inner_radius / radius) as f32,
+        x_axis: single(scaled(cross(v, n), 1.0 / area)),
+        phi_max: phi_max_deg.to_radians() as f32,
+        y_axis: single(scaled(cross(n, u), 1.0 / area)),
+        _pad0: 0,
+        u: single(u),
+        _pad1: 0,
+        v: single(v),
+        _pad2: 0,
+    }
 }

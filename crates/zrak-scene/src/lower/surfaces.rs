@@ -3,22 +3,23 @@
 use std::collections::HashMap;
 
 use zrak_core::materials::{
-    Dielectric, DiffuseLight, FRESNEL_EXACT, FRESNEL_SCHLICK, Isotropic, Lambertian, Metal,
-    SIDES_BOTH, SIDES_FRONT,
+    Dielectric, DiffuseLight, FRESNEL_EXACT, FRESNEL_SCHLICK, Isotropic, Lambertian, Metal, Mix,
+    SIDES_BOTH, SIDES_FRONT, SURFACE_ALPHA, SURFACE_BUMP, SURFACE_CUTOFF, SURFACE_EMISSION,
+    SURFACE_MEDIUM, SURFACE_NORMAL_MAP, SURFACE_ONE_SIDED, Surface,
 };
 use zrak_core::math::Color;
 use zrak_core::scene::{MaterialKind, MaterialRef, TextureKind, TextureRef};
 use zrak_core::textures::{
     Checker, ColorInput, ImageTexture, Noise, PATTERN_MARBLE, PATTERN_NOISE, PATTERN_TURBULENCE,
-    TEXELS_LINEAR, TEXELS_SRGB8,
+    ScalarInput, TEXELS_LINEAR, TEXELS_SRGB8,
 };
 use zrak_image::{Texels, TextureImage};
 
 use super::{LowerOptions, assets};
 use crate::arena::SceneArrays;
 use crate::desc::{
-    ColorDesc, FresnelDesc, ImageFilter, LightSides, MaterialDesc, NoisePattern, SceneDesc,
-    TextureDesc, Triple,
+    ColorDesc, FresnelDesc, ImageFilter, LightSides, MaterialDesc, MediumInterfaceDesc,
+    NoisePattern, ScalarDesc, SceneDesc, TextureDesc, Triple,
 };
 use crate::validate::{KeyPath, Problem};
 
@@ -28,6 +29,12 @@ pub(super) struct LoweredMaterial {
     pub(super) handle: MaterialRef,
     /// Whether it looks at texture coordinates.
     pub(super) needs_uv: bool,
+}
+
+/// Index of the medium of this name; media are in the order of their names.
+pub(super) fn medium_index(desc: &SceneDesc, name: Option<&str>) -> u32 {
+    name.and_then(|name| desc.media.keys().position(|key| key == name))
+        .map_or(zrak_core::media::VACUUM, |i| i as u32)
 }
 
 /// A colour input, and whether it looks at texture coordinates.
@@ -42,6 +49,7 @@ struct Lowering<'a, 'b> {
     options: &'b LowerOptions,
     arrays: &'b mut SceneArrays,
     textures: HashMap<&'a str, LoweredInput>,
+    materials: HashMap<&'a str, LoweredMaterial>,
     problems: Vec<Problem>,
 }
 
@@ -51,14 +59,22 @@ pub(super) fn lower<'a>(
     options: &LowerOptions,
     arrays: &mut SceneArrays,
 ) -> Result<HashMap<&'a str, LoweredMaterial>, Vec<Problem>> {
-    let mut lowering =
-        Lowering { desc, options, arrays, textures: HashMap::new(), problems: Vec::new() };
+    let mut lowering = Lowering {
+        desc,
+        options,
+        arrays,
+        textures: HashMap::new(),
+        materials: HashMap::new(),
+        problems: Vec::new(),
+    };
     for name in desc.textures.keys() {
         lowering.texture(name);
     }
-    let materials =
-        desc.materials.iter().map(|(name, m)| (name.as_str(), lowering.material(m))).collect();
-    if lowering.problems.is_empty() { Ok(materials) } else { Err(lowering.problems) }
+    for name in desc.materials.keys() {
+        lowering.material_of(name);
+    }
+    let Lowering { materials, problems, .. } = lowering;
+    if problems.is_empty() { Ok(materials) } else { Err(problems) }
 }
 
 fn color(c: Triple) -> Color {
@@ -164,6 +180,94 @@ impl<'a> Lowering<'a, '_> {
         textured(TextureKind::Image, self.arrays.images.len() - 1, true)
     }
 
+    fn scalar_input(&mut self, desc: &'a ScalarDesc) -> (ScalarInput, bool) {
+        match desc {
+            ScalarDesc::Value(x) => (ScalarInput::solid(*x as f32), false),
+            ScalarDesc::Texture(name) => {
+                let LoweredInput { input, needs_uv } = self.texture(name);
+                (ScalarInput { value: input.solid.r, texture: input.texture }, needs_uv)
+            }
+        }
+    }
+
+    /// The material of this name, lowered when it is first asked for: inner ones come first. Validation
+    /// has made sure that it exists and does not lead to itself.
+    fn material_of(&mut self, name: &'a str) -> LoweredMaterial {
+        if let Some(done) = self.materials.get(name) {
+            return *done;
+        }
+        let lowered = self.material(&self.desc.materials[name]);
+        self.materials.insert(name, lowered);
+        lowered
+    }
+
+    fn surface(&mut self, desc: &'a MaterialDesc) -> LoweredMaterial {
+        let MaterialDesc::Surface {
+            base,
+            emission,
+            emission_strength,
+            emission_sides,
+            alpha,
+            alpha_cutoff,
+            normal_map,
+            normal_scale,
+            bump,
+            medium,
+            one_sided,
+        } = desc
+        else {
+            return self.material(desc);
+        };
+        let base = self.material_of(base);
+        let mut needs_uv = base.needs_uv;
+        let mut record = Surface { base: base.handle, ..Surface::default() };
+        if let Some(emission) = emission {
+            let lowered = self.color_input(emission);
+            needs_uv |= lowered.needs_uv;
+            record.flags |= SURFACE_EMISSION;
+            record.emission = lowered.input;
+            record.emission_strength = *emission_strength as f32;
+            record.emission_sides = match emission_sides {
+                LightSides::Both => SIDES_BOTH,
+                LightSides::Front => SIDES_FRONT,
+            };
+        }
+        if let Some(alpha) = alpha {
+            let (input, uv) = self.scalar_input(alpha);
+            needs_uv |= uv;
+            record.flags |= SURFACE_ALPHA;
+            record.alpha = input;
+        }
+        if let Some(cutoff) = alpha_cutoff {
+            record.flags |= SURFACE_CUTOFF;
+            record.alpha_cutoff = *cutoff as f32;
+        }
+        if let Some(name) = normal_map {
+            let lowered = self.texture(name);
+            needs_uv = true;
+            record.flags |= SURFACE_NORMAL_MAP;
+            record.normal_map = lowered.input.texture;
+            record.normal_scale = *normal_scale as f32;
+        }
+        if let Some(bump) = bump {
+            let (input, _) = self.scalar_input(bump);
+            needs_uv = true;
+            record.flags |= SURFACE_BUMP;
+            record.bump = input;
+        }
+        if let Some(MediumInterfaceDesc { inside, outside }) = medium {
+            record.flags |= SURFACE_MEDIUM;
+            record.inside = medium_index(self.desc, inside.as_deref());
+            record.outside = medium_index(self.desc, outside.as_deref());
+        }
+        if *one_sided {
+            record.flags |= SURFACE_ONE_SIDED;
+        }
+        self.arrays.surfaces.push(record);
+        let index = self.arrays.surfaces.len() as u32 - 1;
+        LoweredMaterial { handle: MaterialRef::new(MaterialKind::Surface, index), needs_uv }
+    }
+
     fn material(&mut self, desc: &'a MaterialDesc) -> LoweredMaterial {
         let (kind, index, needs_uv) = match desc {
             MaterialDesc::Lambertian { color } => {
@@ -201,6 +305,15 @@ impl<'a> Lowering<'a, '_> {
                 self.arrays.diffuse_lights.push(light);
                 (MaterialKind::DiffuseLight, self.arrays.diffuse_lights.len(), needs_uv)
             }
+            MaterialDesc::Mix { materials, amount } => {
+                let parts = [&materials[0], &materials[1]].map(|name| self.material_of(name));
+                let (amount, uv) = self.scalar_input(amount);
+                let needs_uv = uv || parts.iter().any(|part| part.needs_uv);
+                self.arrays.mixes.push(Mix { amount, materials: parts.map(|part| part.handle) });
+                (MaterialKind::Mix, self.arrays.mixes.len(), needs_uv)
+            }
+            MaterialDesc::Interface => (MaterialKind::Interface, 1, false),
+            MaterialDesc::Surface { .. } => return self.surface(desc),
             _ => (MaterialKind::Lambertian, 1, false),
         };
         LoweredMaterial { handle: MaterialRef::new(kind, index as u32 - 1), needs_uv }

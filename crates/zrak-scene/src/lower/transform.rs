@@ -61,6 +61,14 @@ impl Transform {
         self.rows.map(|r| r[0] * v[0] + r[1] * v[1] + r[2] * v[2])
     }
 
+    /// Transposed linear part applied to a direction: maps normals when `self` is the inverse of the map
+    /// of the points.
+    #[must_use]
+    pub fn transposed_vector(&self, n: Triple) -> Triple {
+        let column = |j: usize| (0..3).map(|i| self.rows[i][j] * n[i]).sum();
+        [column(0), column(1), column(2)]
+    }
+
     /// Determinant of the linear part: how volumes are scaled, negative for reflections.
     #[must_use]
     pub fn determinant(&self) -> f64 {

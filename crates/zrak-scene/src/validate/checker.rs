@@ -9,13 +9,15 @@ use crate::suggest;
 
 pub(super) struct Checker<'a> {
     pub(super) scene: &'a SceneDesc,
+    /// Whether what is being looked at belongs to a prototype.
+    pub(super) in_prototype: bool,
     path: KeyPath,
     problems: Vec<Problem>,
 }
 
 impl<'a> Checker<'a> {
     pub(super) fn new(scene: &'a SceneDesc) -> Self {
-        Self { scene, path: KeyPath::default(), problems: Vec::new() }
+        Self { scene, in_prototype: false, path: KeyPath::default(), problems: Vec::new() }
     }
 
     pub(super) fn into_problems(self) -> Vec<Problem> {
@@ -153,6 +155,11 @@ impl<'a> Checker<'a> {
             format!("the scene's {what}s are {}", suggest::list_all(names()))
         };
         self.note_at(path, format!("unknown {what} `{name}`"), Some(&help));
+    }
+
+    /// The path of what is being looked at.
+    pub(super) fn path(&self) -> KeyPath {
+        self.path.clone()
     }
 
     /// The path of the field `key` of what is being looked at.

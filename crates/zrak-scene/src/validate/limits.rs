@@ -23,5 +23,9 @@ pub const DEPTH_MAX: u32 = 65_535;
 pub const OCTAVES_MAX: u32 = 16;
 /// How deep checkers may be nested in checkers.
 pub const TEXTURE_NESTING_MAX: usize = 16;
+/// How deep prototypes may be nested in prototypes.
+pub const PROTOTYPE_NESTING_MAX: usize = 32;
+/// How deep mixed materials may be nested in mixed materials.
+pub const MIX_NESTING_MAX: usize = 16;
 /// How deep groups may be nested in groups.
 pub const GROUP_NESTING_MAX: usize = 64;

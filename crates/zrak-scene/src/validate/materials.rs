@@ -3,9 +3,10 @@
 use std::collections::BTreeSet;
 
 use super::checker::Checker;
-use super::limits::LENGTH_MIN;
+use super::limits::{LENGTH_MIN, MIX_NESTING_MAX};
+use super::problem::KeyPath;
 use super::textures;
-use crate::desc::{ColorDesc, MaterialDesc};
+use crate::desc::{ColorDesc, MaterialDesc, ScalarDesc};
 
 pub(super) fn check(checker: &mut Checker<'_>) {
     let scene = checker.scene;
@@ -31,11 +32,22 @@ pub(super) fn check(checker: &mut Checker<'_>) {
                     ColorDesc::Solid(color) => checker.radiance("color", *color),
                     ColorDesc::Texture(name) => textures::reference(checker, "color", name),
                 },
+                MaterialDesc::Mix { materials, amount } => {
+                    checker.enter("materials", |checker| {
+                        for (i, name) in materials.iter().enumerate() {
+                            checker.enter(i, |checker| part(checker, "", name));
+                        }
+                    });
+                    scalar(checker, "amount", amount, Some([0.0, 1.0]));
+                }
+                MaterialDesc::Interface => {}
+                MaterialDesc::Surface { .. } => surface(checker, material),
                 _ => checker.note("kind", "this kind of material is not rendered yet", None),
             });
         }
     });
 
+    mixes(checker);
     let mut bad = BTreeSet::new();
     for texture in reflected {
         for (path, color) in textures::colors(scene, texture) {
@@ -43,6 +55,115 @@ pub(super) fn check(checker: &mut Checker<'_>) {
             if color.iter().any(|&x| x > 1.0 && x.is_finite()) && bad.insert(path.to_string()) {
                 checker.albedo_at(&path, color);
             }
+        }
+    }
+}
+
+fn surface(checker: &mut Checker<'_>, material: &MaterialDesc) {
+    let MaterialDesc::Surface {
+        base,
+        emission,
+        emission_strength,
+        emission_sides: _,
+        alpha,
+        alpha_cutoff,
+        normal_map,
+        normal_scale,
+        bump,
+        medium,
+        one_sided: _,
+    } = material
+    else {
+        return;
+    };
+    part(checker, "base", base);
+    match emission {
+        Some(ColorDesc::Solid(color)) => checker.radiance("emission", *color),
+        Some(ColorDesc::Texture(name)) => textures::reference(checker, "emission", name),
+        None => {}
+    }
+    let strength = |x: f64| x >= 0.0;
+    checker.require("emission_strength", *emission_strength, strength, "at least 0", None);
+    if let Some(alpha) = alpha {
+        scalar(checker, "alpha", alpha, Some([0.0, 1.0]));
+    }
+    if let Some(cutoff) = *alpha_cutoff {
+        checker.number("alpha_cutoff", cutoff);
+    }
+    if let Some(name) = normal_map {
+        textures::reference(checker, "normal_map", name);
+    }
+    checker.number("normal_scale", *normal_scale);
+    if let Some(bump) = bump {
+        scalar(checker, "bump", bump, None);
+    }
+    if let Some(interface) = medium {
+        checker.enter("medium", |checker| {
+            for (key, name) in [("inside", &interface.inside), ("outside", &interface.outside)] {
+                let media = &checker.scene.media;
+                if let Some(name) = name.as_ref().filter(|name| !media.contains_key(*name)) {
+                    checker.unknown_name(checker.path_of(key), "medium", name, media);
+                }
+            }
+        });
+    }
+}
+
+/// Checks a material that another one is made of.
+fn part(checker: &mut Checker<'_>, key: &str, name: &str) {
+    super::objects::surface_at(checker, key, name);
+    if let Some(MaterialDesc::Surface { .. }) = checker.scene.materials.get(name) {
+        let message = format!("material `{name}` is a `surface`, of which no other can be made");
+        checker.note(key, message, Some("name the material that scatters"));
+    }
+}
+
+/// Checks a number that may be a texture.
+pub(super) fn scalar(
+    checker: &mut Checker<'_>,
+    key: &str,
+    input: &ScalarDesc,
+    range: Option<[f64; 2]>,
+) {
+    match input {
+        ScalarDesc::Value(x) => match range {
+            Some([lo, hi]) => {
+                let rule = format!("from {lo} to {hi}");
+                checker.require(key, *x, |x| (lo..=hi).contains(&x), &rule, None);
+            }
+            None => {
+                checker.number(key, *x);
+            }
+        },
+        ScalarDesc::Texture(name) => textures::reference(checker, key, name),
+    }
+}
+
+/// Notes mixes that are made of themselves.
+fn mixes(checker: &mut Checker<'_>) {
+    let scene = checker.scene;
+    for root in scene.materials.keys() {
+        let mut level: Vec<&str> = vec![root];
+        let mut n_levels = 0;
+        while !level.is_empty() && n_levels <= MIX_NESTING_MAX {
+            let parts = |name: &&str| match scene.materials.get(*name) {
+                Some(MaterialDesc::Mix { materials, .. }) => {
+                    materials.iter().map(String::as_str).collect()
+                }
+                _ => Vec::new(),
+            };
+            level = level.iter().flat_map(parts).collect();
+            level.sort_unstable();
+            level.dedup();
+            n_levels += 1;
+        }
+        if !level.is_empty() {
+            let path = KeyPath::default().join("materials").join(root.as_str());
+            let message = format!(
+                "material `{root}` is made of itself, or of mixes that are nested more than \
+                 {MIX_NESTING_MAX} deep"
+            );
+            checker.note_at(path, message, None);
         }
     }
 }

@@ -5,8 +5,10 @@
 //! Images are looked at later, when they are read.
 
 mod checker;
+mod lights;
 pub mod limits;
 mod materials;
+mod meshes;
 mod objects;
 mod problem;
 mod textures;
@@ -20,7 +22,7 @@ pub use problem::{KeyPath, PathPart, Problem};
 use checker::Checker;
 use limits::{DEPTH_MAX, LENGTH_MIN, PIXELS_MAX, SAMPLES_MAX, SIDE_MAX, SINE_MIN};
 
-use crate::desc::{BackgroundDesc, CameraDesc, RenderDesc, SceneDesc, Triple};
+use crate::desc::{BackgroundDesc, CameraDesc, ProjectionDesc, RenderDesc, SceneDesc, Triple};
 
 /// The version of the format that this version of zrak reads.
 pub const FORMAT: u32 = 1;
@@ -37,6 +39,9 @@ pub fn validate(scene: &SceneDesc) -> Vec<Problem> {
     checker.enter("background", |checker| background(checker, &scene.background));
     textures::check(&mut checker);
     materials::check(&mut checker);
+    lights::check(&mut checker);
+    meshes::check_meshes(&mut checker);
+    meshes::check_prototypes(&mut checker);
     checker.enter("objects", |checker| objects::check(checker, &scene.objects));
     checker.into_problems()
 }
@@ -86,6 +91,24 @@ fn camera(checker: &mut Checker<'_>, camera: &CameraDesc) {
         "more than 0",
         None,
     );
+    if let ProjectionDesc::Orthographic { height } = camera.projection {
+        checker.enter("projection", |checker| {
+            checker.require("height", height, |x| x >= LENGTH_MIN, "more than 0", None);
+        });
+    }
+    checker.enter("window", |checker| {
+        let [x0, x1, y0, y1] = camera.window;
+        if checker.numbers(&camera.window) && (x1 - x0 < 1e-6 || y1 - y0 < 1e-6) {
+            let help = "write left, right, top, bottom; the whole view is [0, 1, 0, 1]";
+            checker.note("", "the window has no size", Some(help));
+        }
+    });
+    if let Some(name) = &camera.medium {
+        let media = &checker.scene.media;
+        if !media.contains_key(name) {
+            checker.unknown_name(checker.path_of("medium"), "medium", name, media);
+        }
+    }
     let has_shutter = checker.number("shutter_open_s", camera.shutter_open_s)
         & checker.number("shutter_close_s", camera.shutter_close_s);
     if has_shutter && camera.shutter_open_s > camera.shutter_close_s {

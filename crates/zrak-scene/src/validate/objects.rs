@@ -11,6 +11,13 @@ pub(super) fn check(checker: &mut Checker<'_>, objects: &[ObjectDesc]) {
     check_all(checker, objects, Some(Transform::IDENTITY), 0);
 }
 
+/// The same for the members of a prototype.
+pub(super) fn check_prototype(checker: &mut Checker<'_>, objects: &[ObjectDesc]) {
+    checker.in_prototype = true;
+    check(checker, objects);
+    checker.in_prototype = false;
+}
+
 /// `outer` is the map of the groups around, none if that is degenerate.
 fn check_all(
     checker: &mut Checker<'_>,
@@ -60,6 +67,11 @@ fn check_one(
             reach(checker, map, corners);
         }
         ObjectDesc::Medium { boundary, density, material, transform } => {
+            if checker.in_prototype {
+                let message = "a medium of constant density cannot be in a prototype";
+                let help = "bound a medium of `[media]` by a `surface` material instead";
+                checker.note("", message, Some(help));
+            }
             checker.require("density", *density, |x| x >= LENGTH_MIN, "more than 0", None);
             phase_function(checker, material);
             // The boundary's own steps come first, then the medium's, then the groups'.
@@ -77,11 +89,54 @@ fn check_one(
                 }
             });
         }
-        ObjectDesc::Mesh { .. }
-        | ObjectDesc::Disk { .. }
-        | ObjectDesc::Cylinder { .. }
-        | ObjectDesc::Instance { .. } => {
-            checker.note("kind", "this kind of object is not rendered yet", None);
+        ObjectDesc::Mesh { mesh, material, group_materials, flip: _, transform } => {
+            let meshes = &checker.scene.meshes;
+            if !meshes.contains_key(mesh) {
+                checker.unknown_name(checker.path_of("mesh"), "mesh", mesh, meshes);
+            }
+            surface(checker, material);
+            checker.enter("group_materials", |checker| {
+                for (i, name) in group_materials.iter().enumerate() {
+                    checker.enter(i, |checker| surface_at(checker, "", name));
+                }
+            });
+            transforms::check(checker, transform, outer);
+        }
+        ObjectDesc::Disk { height, radius, inner_radius, phi_max_deg, material, transform } => {
+            let more = "more than 0";
+            let mut good = checker.number("height", *height);
+            good &= checker.require("radius", *radius, |x| x >= LENGTH_MIN, more, None);
+            let ok = |x: f64| (0.0..*radius).contains(&x);
+            let rule = "from 0 to less than `radius`";
+            good &= checker.require("inner_radius", *inner_radius, ok, rule, None);
+            good &= angle(checker, *phi_max_deg);
+            surface(checker, material);
+            let map = transforms::check(checker, transform, outer);
+            let corners = [[-radius, -radius, *height], [*radius, *radius, *height]];
+            reach(checker, map, good.then(|| corners.to_vec()));
+        }
+        ObjectDesc::Cylinder { radius, z_min, z_max, phi_max_deg, material, transform } => {
+            let more = "more than 0";
+            let mut good = checker.number("z_min", *z_min);
+            good &= checker.require("radius", *radius, |x| x >= LENGTH_MIN, more, None);
+            let ok = |x: f64| x - z_min >= LENGTH_MIN;
+            good &= checker.require("z_max", *z_max, ok, "more than `z_min`", None);
+            good &= angle(checker, *phi_max_deg);
+            surface(checker, material);
+            let map = transforms::check(checker, transform, outer);
+            let corners = [[-radius, -radius, *z_min], [*radius, *radius, *z_max]];
+            reach(checker, map, good.then(|| corners.to_vec()));
+        }
+        ObjectDesc::Instance { prototype, transform, transform_end } => {
+            let prototypes = &checker.scene.prototypes;
+            if !prototypes.contains_key(prototype) {
+                let path = checker.path_of("prototype");
+                checker.unknown_name(path, "prototype", prototype, prototypes);
+            }
+            transforms::check(checker, transform, outer);
+            if let Some(end) = transform_end {
+                transforms::check_at(checker, "transform_end", end, outer);
+            }
         }
         ObjectDesc::Group { objects, transform } => {
             if n_groups >= GROUP_NESTING_MAX {
@@ -178,11 +233,22 @@ fn reach(checker: &mut Checker<'_>, map: Option<Transform>, corners: Option<Vec<
 
 /// Checks the material of a surface.
 fn surface(checker: &mut Checker<'_>, name: &str) {
-    if let Some(MaterialDesc::Isotropic { .. }) = material(checker, name) {
+    surface_at(checker, "material", name);
+}
+
+/// The same for a material that is named in the field `key`.
+pub(super) fn surface_at(checker: &mut Checker<'_>, key: &str, name: &str) {
+    if let Some(MaterialDesc::Isotropic { .. }) = material_at(checker, key, name) {
         let message = format!("material `{name}` is `isotropic`, which is for media, not surfaces");
         let help = "make the object the `boundary` of a `medium`, or the material a `lambertian`";
-        checker.note("material", message, Some(help));
+        checker.note(key, message, Some(help));
     }
+}
+
+/// Checks an angle that a shape covers.
+fn angle(checker: &mut Checker<'_>, degrees: f64) -> bool {
+    let ok = |x: f64| x > 0.0 && x <= 360.0;
+    checker.require("phi_max_deg", degrees, ok, "more than 0 and at most 360 degrees", None)
 }
 
 /// Checks the material of a medium.
@@ -197,10 +263,19 @@ fn phase_function(checker: &mut Checker<'_>, name: &str) {
 }
 
 fn material<'a>(checker: &mut Checker<'a>, name: &str) -> Option<&'a MaterialDesc> {
+    material_at(checker, "material", name)
+}
+
+/// The material of this name, which stands in the field `key`.
+pub(super) fn material_at<'a>(
+    checker: &mut Checker<'a>,
+    key: &str,
+    name: &str,
+) -> Option<&'a MaterialDesc> {
     let materials = &checker.scene.materials;
     let found = materials.get(name);
     if found.is_none() {
-        let path = checker.path_of("material");
+        let path = if key.is_empty() { checker.path() } else { checker.path_of(key) };
         checker.unknown_name(path, "material", name, materials);
     }
     found

@@ -16,7 +16,17 @@ pub(super) fn check(
     steps: &[TransformStep],
     outer: Option<Transform>,
 ) -> Option<Transform> {
-    let all_good = checker.enter("transform", |checker| {
+    check_at(checker, "transform", steps, outer)
+}
+
+/// The same for steps that stand in the field `key`.
+pub(super) fn check_at(
+    checker: &mut Checker<'_>,
+    key: &str,
+    steps: &[TransformStep],
+    outer: Option<Transform>,
+) -> Option<Transform> {
+    let all_good = checker.enter(key, |checker| {
         let mut good = true;
         for (i, step) in steps.iter().enumerate() {
             good &= checker.enter(i, |checker| check_step(checker, step));
@@ -30,7 +40,7 @@ pub(super) fn check(
     if is_degenerate(&whole.rows) {
         let message = "the steps together, with those of the groups around, scale lengths to \
                        outside of [1e-12, 1e12] or flatten space";
-        checker.note("transform", message, None);
+        checker.note(key, message, None);
         return None;
     }
     Some(whole)

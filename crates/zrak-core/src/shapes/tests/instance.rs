@@ -1,6 +1,6 @@
 //! Shapes under affine maps.
 
-use super::super::{Instance, Shape, primitive_bounds, surface_interaction};
+use super::super::{primitive_bounds, surface_interaction};
 use super::boxes::box3;
 use super::check_interaction;
 use super::sphere::sphere;
@@ -8,7 +8,7 @@ use crate::math::{Affine, Vec3, reciprocal_or_huge};
 use crate::ray::Ray;
 use crate::scene::PrimKind;
 use crate::testing::{
-    D3, Rng, TestScene, add, cross, dot, double, length, prim, scaled, single, sub, unit,
+    D3, Rng, TestScene, add, cross, dot, double, hit_of, length, prim, scaled, single, sub, unit,
 };
 
 /// Rows of a 3x4 matrix.
@@ -73,25 +73,18 @@ fn interactions_lie_on_the_mapped_surface() {
             scene.boxes.push(box3(Vec3::splat(-1.0), Vec3::splat(1.0)));
             prim(PrimKind::Box, 0)
         };
-        scene.instances.push(Instance {
-            world_from_object: affine(map),
-            object_from_world: affine(back),
-            target,
-            _pad: [0; 3],
-        });
+        let handle = scene.place(target, affine(map), affine(back));
         let view = scene.view();
-        let instance = scene.instances[0];
-        let handle = prim(PrimKind::Instance, 0);
         let bounds = primitive_bounds(&view, handle, [0.0; 2]);
         for _ in 0..4 {
             let aim = apply(&map, double(rng.in_cube(1.2)), 1.0);
             let d = rng.direction();
             let far = rng.log_range(1.0, 100.0) * size;
             let ray = Ray { o: single(sub(aim, scaled(double(d), far))), d, time: 0.0 };
-            let Some(t) = instance.intersect(&view, &ray) else { continue };
+            let Some(hit) = hit_of(&view, handle, &ray) else { continue };
             n_hits += 1;
             assert!(bounds.slab(ray.o, ray.d.map(reciprocal_or_huge)).is_some());
-            let i = surface_interaction(&view, handle, &ray, t);
+            let i = surface_interaction(&view, &hit, &ray);
             check_interaction(&i);
             // The true normal, by the inverse transposed; and the true surface, in object space.
             let local = apply(&back, double(i.p), 1.0);
@@ -121,7 +114,7 @@ fn interactions_lie_on_the_mapped_surface() {
                 assert!(dot(double(i.n), n) > 1.0 - 1e-4, "{:?} {n:?}", i.n);
             }
             // And near the ray.
-            let on_ray = add(double(ray.o), scaled(double(ray.d), f64::from(t)));
+            let on_ray = add(double(ray.o), scaled(double(ray.d), f64::from(hit.t)));
             let distance = length(sub(double(i.p), on_ray));
             assert!(
                 distance < 2e-3 * size,
@@ -137,15 +130,12 @@ fn the_identity_changes_no_hit() {
     let mut rng = Rng::new(2);
     let mut scene = TestScene::default();
     scene.spheres.push(sphere(Vec3::ZERO, 1.0));
+    let bare = prim(PrimKind::Sphere, 0);
+    let handle = scene.place(bare, Affine::IDENTITY, Affine::IDENTITY);
     let view = scene.view();
-    let instance = Instance {
-        world_from_object: Affine::IDENTITY,
-        object_from_world: Affine::IDENTITY,
-        target: prim(PrimKind::Sphere, 0),
-        _pad: [0; 3],
-    };
     for _ in 0..100_000 {
         let ray = Ray { o: rng.in_cube(2.0), d: rng.direction(), time: 0.0 };
-        assert_eq!(instance.intersect(&view, &ray), scene.spheres[0].intersect(&ray));
+        let t = |prim| hit_of(&view, prim, &ray).map(|hit| hit.t);
+        assert_eq!(t(handle), t(bare));
     }
 }

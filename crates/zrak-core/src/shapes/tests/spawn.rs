@@ -1,7 +1,7 @@
 //! Rays that leave a surface do not meet it again by rounding: at scales from 1e-3 to 1e5, near the
 //! origin and far from it, in every direction.
 
-use super::super::{Convex, Instance, Shape, Sphere, intersect_primitive, surface_interaction};
+use super::super::{Convex, Shape, Sphere, surface_interaction};
 use super::boxes::{box3, random_box};
 use super::instance::{affine, inverse, random_map};
 use super::quad::random_quad;
@@ -10,10 +10,9 @@ use super::triangle::random_triangle;
 use crate::interaction::SurfaceInteraction;
 use crate::math::Vec3;
 use crate::ray::Ray;
-use crate::sampler::Sampler;
 use crate::scene::PrimKind;
 use crate::testing::{
-    D3, Rng, TestScene, add, cross, dot, double, prim, scaled, single, sub, unit,
+    D3, Rng, TestScene, add, cross, dot, double, hit_of, prim, scaled, single, sub, unit,
 };
 
 /// Direction to the side of `n` that `side` says, often almost along the surface.
@@ -173,7 +172,6 @@ fn both_sides_of_a_triangle() {
 fn both_sides_of_an_instance() {
     let mut rng = Rng::new(6);
     let mut n_cases = 0;
-    let sampler = Sampler::new(0, 0, 0, 0);
     while n_cases < 200_000 {
         let mut scene = TestScene::default();
         let size = rng.log_range(1e-3, 1e5);
@@ -187,19 +185,13 @@ fn both_sides_of_an_instance() {
             scene.boxes.push(box3(Vec3::splat(-1.0), Vec3::splat(1.0)));
             prim(PrimKind::Box, 0)
         };
-        scene.instances.push(Instance {
-            world_from_object: affine(map),
-            object_from_world: affine(inverse(&map)),
-            target,
-            _pad: [0; 3],
-        });
+        let handle = scene.place(target, affine(map), affine(inverse(&map)));
         let view = scene.view();
-        let handle = prim(PrimKind::Instance, 0);
-        let hit = |ray: &Ray| intersect_primitive(&view, handle, ray, &sampler, 0.0);
+        let hit = |ray: &Ray| hit_of(&view, handle, ray);
         let aim = super::instance::apply(&map, double(rng.in_cube(1.0)), 1.0);
         let ray = ray_at(&mut rng, aim, size);
-        let Some(t) = hit(&ray) else { continue };
-        let i = surface_interaction(&view, handle, &ray, t);
+        let Some(first) = hit(&ray) else { continue };
+        let i = surface_interaction(&view, &first, &ray);
         n_cases += 1;
         let out = i.spawn(leaving(&mut rng, i.n, 1.0), 0.0);
         assert_eq!(hit(&out), None, "{map:?} {i:?} {out:?}");
@@ -207,9 +199,10 @@ fn both_sides_of_an_instance() {
         let cos = -dot(double(w), double(i.n));
         let into = i.spawn(w, 0.0);
         match hit(&into) {
-            Some(t) => {
+            Some(second) => {
+                let t = second.t;
                 if !is_sphere {
-                    let there = surface_interaction(&view, handle, &into, t);
+                    let there = surface_interaction(&view, &second, &into);
                     assert!(dot(double(there.n), double(i.n)) < 0.9999, "{map:?} {i:?} {into:?}");
                 } else if cos > 0.01 {
                     // The shortest chord of the flattest ellipsoid is long.

@@ -144,7 +144,10 @@ fn triangle_meshes_are_closed_from_outside() {
                 let way = rng.log_range(1.1, 100.0);
                 let o = single(add(middle, scaled(sub(aim, middle), way)));
                 let ray = ray_to(o, single(middle));
-                assert!(all.closest_hit(&view, &ray, &sampler).is_some(), "{size} {ray:?}");
+                assert!(
+                    all.closest_hit(&view, &ray, &sampler, f32::INFINITY).is_some(),
+                    "{size} {ray:?}"
+                );
             }
         }
     }
@@ -224,7 +227,7 @@ fn turned_rooms_do_not_leak() {
                             aim[a] = size * f64::from(cell) / f64::from(cells);
                         }
                         let ray: Ray = ray_to(place(o), place(aim));
-                        let hit = all.closest_hit(&view, &ray, &sampler);
+                        let hit = all.closest_hit(&view, &ray, &sampler, f32::INFINITY);
                         leaks += u32::from(hit.is_none());
                     }
                 }
@@ -262,7 +265,7 @@ fn rooms_of_quads_do_not_leak() {
                         aim[a] = lo[a] + size * f64::from(cell) / f64::from(cells);
                     }
                     let ray: Ray = ray_to(single(o), single(aim));
-                    let hit = all.closest_hit(&view, &ray, &sampler);
+                    let hit = all.closest_hit(&view, &ray, &sampler, f32::INFINITY);
                     assert!(hit.is_some(), "a leak: n {n}, size {size}, away {away}, {ray:?}");
                 }
             }

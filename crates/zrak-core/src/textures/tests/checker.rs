@@ -4,6 +4,7 @@ use super::super::{Checker, ColorInput};
 use crate::math::{Color, Vec3, vec3};
 use crate::scene::{TextureKind, TextureRef};
 use crate::testing::{Rng, TestScene, solid};
+use crate::textures::TextureContext;
 
 const EVEN: Color = Color::new(1.0, 0.0, 0.0);
 const ODD: Color = Color::new(0.0, 0.0, 1.0);
@@ -57,7 +58,7 @@ fn checkers_nest() {
     scene.checkers.push(Checker { even: solid(inner), ..checker(4.0) });
     scene.checkers.push(Checker { even: input(0), ..checker(1.0) });
     let view = scene.view();
-    let at = |x: f32| input(1).evaluate(&view, vec3(x, 0.01, 0.01), [0.0; 2]);
+    let at = |x: f32| input(1).evaluate(&view, &TextureContext::in_space(vec3(x, 0.01, 0.01)));
     assert_eq!(at(0.1), inner);
     assert_eq!(at(0.3), ODD, "the inner checker is odd there");
     assert_eq!(at(1.1), ODD);
@@ -66,5 +67,5 @@ fn checkers_nest() {
     assert_eq!(at(-0.1), ODD);
     assert_eq!(at(-1.1), ODD, "the inner checker is odd there");
     assert_eq!(at(-1.3), inner);
-    assert_eq!(solid(EVEN).evaluate(&view, Vec3::ZERO, [0.0; 2]), EVEN);
+    assert_eq!(solid(EVEN).evaluate(&view, &TextureContext::in_space(Vec3::ZERO)), EVEN);
 }

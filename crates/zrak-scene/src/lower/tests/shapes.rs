@@ -35,8 +35,8 @@ fn triangle(vertices: [Triple; 3], transform: Vec<TransformStep>) -> ObjectDesc 
 fn hit(arena: &SceneArena, ray: &Ray) -> Option<SurfaceInteraction> {
     let view = arena.view();
     let sampler = Sampler::new(0, 0, 0, 0);
-    let hit = Bvh8 { nodes: view.nodes8 }.closest_hit(&view, ray, &sampler)?;
-    Some(surface_interaction(&view, hit.prim, ray, hit.t))
+    let hit = Bvh8 { nodes: view.nodes8 }.closest_hit(&view, ray, &sampler, f32::INFINITY)?;
+    Some(surface_interaction(&view, &hit, ray))
 }
 
 fn single(v: Triple) -> Vec3 {
@@ -230,12 +230,13 @@ fn media_take_transforms_of_boundary_and_object() {
     };
     let arena = arena(&scene(vec![medium]));
     let view = arena.view();
-    assert_eq!((view.media.len(), view.instances.len()), (1, 1));
+    assert_eq!((view.media.len(), view.placements.len()), (1, 1));
     assert_eq!(view.media.get(0).neg_mean_free_path, -1e-6);
     // So dense that it is hit at its rim: an edge at 10 - sqrt(2).
     let ray = Ray { o: Vec3::ZERO, d: vec3(1.0, 0.0, 0.0), time: 0.0 };
     let sampler = Sampler::new(0, 0, 0, 3);
-    let hit = Bvh8 { nodes: view.nodes8 }.closest_hit(&view, &ray, &sampler).unwrap();
+    let hit =
+        Bvh8 { nodes: view.nodes8 }.closest_hit(&view, &ray, &sampler, f32::INFINITY).unwrap();
     assert!((hit.t - (10.0 - 2.0_f32.sqrt())).abs() < 1e-3, "{hit:?}");
 }
 

@@ -2,6 +2,7 @@
 
 use zrak_core::math::Vec3;
 use zrak_core::scene::{MaterialKind, TextureKind};
+use zrak_core::textures::TextureContext;
 use zrak_core::textures::{PATTERN_MARBLE, TEXELS_SRGB8};
 
 use super::{arena, scene};
@@ -81,7 +82,7 @@ fn nested_textures_are_lowered_once_and_inner_first() {
         .find(|albedo| albedo.texture.kind() == Some(TextureKind::Checker))
         .unwrap();
     for x in [-3.3, 0.1, 0.7, 1.2] {
-        let color = albedo.evaluate(&view, Vec3::splat(x), [0.0; 2]);
+        let color = albedo.evaluate(&view, &TextureContext::in_space(Vec3::splat(x)));
         assert_eq!(color.to_array(), [0.1, 0.2, 0.3]);
     }
     let noise = view.noises.get(0);

@@ -1,0 +1,129 @@
+//! Meshes that are written out, and prototypes.
+
+use std::collections::BTreeMap;
+
+use super::checker::Checker;
+use super::limits::PROTOTYPE_NESTING_MAX;
+use super::objects;
+use crate::desc::{MeshDesc, ObjectDesc};
+
+pub(super) fn check_meshes(checker: &mut Checker<'_>) {
+    let scene = checker.scene;
+    checker.enter("meshes", |checker| {
+        for (name, mesh) in &scene.meshes {
+            checker.enter(name.as_str(), |checker| mesh_of(checker, mesh));
+        }
+    });
+}
+
+fn mesh_of(checker: &mut Checker<'_>, mesh: &MeshDesc) {
+    match mesh {
+        MeshDesc::File { path, smooth_angle_deg } => {
+            if path.is_empty() {
+                let help = "name a PLY or OBJ file, relative to the scene file";
+                checker.note("path", "`path` is empty", Some(help));
+            }
+            if let Some(angle) = *smooth_angle_deg {
+                let ok = |x: f64| (0.0..=180.0).contains(&x);
+                checker.require("smooth_angle_deg", angle, ok, "from 0 to 180 degrees", None);
+            }
+        }
+        MeshDesc::Inline { positions, triangles, normals, uvs, colors } => {
+            let n = positions.len();
+            if n == 0 || triangles.is_empty() {
+                checker.note("", "the mesh has no triangles", None);
+            }
+            for (key, len) in
+                [("normals", normals.len()), ("uvs", uvs.len()), ("colors", colors.len())]
+            {
+                if len != 0 && len != n {
+                    let message = format!(
+                        "`{key}` must have one entry for each of the {n} positions, has {len}"
+                    );
+                    checker.note(key, message, None);
+                }
+            }
+            numbers(checker, "positions", positions);
+            numbers(checker, "normals", normals);
+            numbers(checker, "uvs", uvs);
+            numbers(checker, "colors", colors);
+            checker.enter("triangles", |checker| {
+                let beyond = |corners: &[u32; 3]| corners.iter().any(|&v| v as usize >= n);
+                if let Some(i) = triangles.iter().position(beyond) {
+                    let message = format!("the triangle has a corner beyond the {n} positions");
+                    let help = "corners are counted from 0";
+                    checker.note_at(checker.path().join(i), message, Some(help));
+                }
+            });
+        }
+        // Importers have checked it.
+        MeshDesc::Loaded(_) => {}
+    }
+}
+
+fn numbers<const N: usize>(checker: &mut Checker<'_>, key: &str, values: &[[f32; N]]) {
+    let is_bad = |v: &[f32; N]| v.iter().any(|x| !(x.abs() <= 1e12));
+    if let Some(i) = values.iter().position(is_bad) {
+        checker.enter(key, |checker| {
+            let message = "numbers must lie in [-1e12, 1e12]";
+            checker.note_at(checker.path().join(i), message, None);
+        });
+    }
+}
+
+pub(super) fn check_prototypes(checker: &mut Checker<'_>) {
+    let scene = checker.scene;
+    checker.enter("prototypes", |checker| {
+        for (name, members) in &scene.prototypes {
+            checker.enter(name.as_str(), |checker| {
+                objects::check_prototype(checker, members);
+                if !nests(&scene.prototypes, name) {
+                    let message = format!(
+                        "prototype `{name}` contains itself, or is nested more than \
+                         {PROTOTYPE_NESTING_MAX} deep"
+                    );
+                    checker.note(
+                        "",
+                        message,
+                        Some("an instance in it must be of another prototype"),
+                    );
+                }
+            });
+        }
+    });
+}
+
+/// Whether the instances in a prototype lead to an end.
+fn nests(prototypes: &BTreeMap<String, Vec<ObjectDesc>>, root: &str) -> bool {
+    let mut level = vec![root];
+    for _ in 0..PROTOTYPE_NESTING_MAX {
+        let mut next: Vec<&str> = level
+            .iter()
+            .filter_map(|name| prototypes.get(*name))
+            .flat_map(|o| instances(o))
+            .collect();
+        next.sort_unstable();
+        next.dedup();
+        if next.is_empty() {
+            return true;
+        }
+        level = next;
+    }
+    false
+}
+
+/// Names of the prototypes that are placed by these objects and the groups among them.
+fn instances(objects: &[ObjectDesc]) -> Vec<&str> {
+    let mut lists = vec![objects];
+    let mut names = Vec::new();
+    while let Some(objects) = lists.pop() {
+        for object in objects {
+            match object {
+                ObjectDesc::Instance { prototype, .. } => names.push(prototype.as_str()),
+                ObjectDesc::Group { objects, .. } => lists.push(objects),
+                _ => {}
+            }
+        }
+    }
+    names
+}
