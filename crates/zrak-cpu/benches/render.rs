@@ -42,7 +42,7 @@ fn rays(scene: &SceneView) -> [(&'static str, Vec<(Ray, Sampler)>); 2] {
             if hit.prim.kind() == Some(PrimKind::Medium) {
                 continue;
             }
-            let surface = surface_interaction(scene, hit.prim, &ray, hit.t);
+            let surface = surface_interaction(scene, &hit, &ray);
             let n = if surface.is_front(ray.d) { surface.n } else { -surface.n };
             let u = sampler.at_bounce(BounceDim::DirectionU);
             let v = sampler.at_bounce(BounceDim::DirectionV);

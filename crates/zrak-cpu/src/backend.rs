@@ -6,7 +6,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 use zrak_core::accel::{Accel, BruteForce, Bvh2, Bvh8};
 use zrak_core::accessor::Array;
-use zrak_core::scene::PrimRef;
+use zrak_core::scene::{PrimKind, PrimRef};
 use zrak_render::{
     Backend, BackendError, BackendErrorKind, BackendInfo, Control, Film, Region, SampleRange, Times,
 };
@@ -113,13 +113,20 @@ impl CpuBackend {
     }
 }
 
-/// All primitives that rays are traced against.
+/// All primitives of the world's tree.
 fn leaves(scene: &SceneArena) -> Vec<PrimRef> {
     let nodes = scene.view().nodes2;
-    (0..nodes.len())
-        .flat_map(|i| nodes.get(i).children)
-        .filter(|child| !child.is_node() && *child != PrimRef::NONE)
-        .collect()
+    let mut leaves = Vec::new();
+    let mut links = vec![PrimRef::new(PrimKind::Node, 0)];
+    while let Some(link) = links.pop() {
+        if link.is_node() {
+            let children = nodes.get(link.index()).children;
+            links.extend(children.into_iter().filter(|child| *child != PrimRef::NONE));
+        } else {
+            leaves.push(link);
+        }
+    }
+    leaves
 }
 
 impl Backend for CpuBackend {

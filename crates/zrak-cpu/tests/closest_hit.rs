@@ -6,13 +6,14 @@ mod common;
 use common::scenes;
 use zrak_core::accel::{Accel, BruteForce, Bvh2, Bvh8};
 use zrak_core::accessor::Array;
+use zrak_core::interaction::NO_INSTANCE;
 use zrak_core::math::{Vec3, lowbias32, unit_f32, vec3};
 use zrak_core::ray::Ray;
 use zrak_core::sampler::Sampler;
 use zrak_core::scene::{PrimKind, PrimRef, SceneView};
 use zrak_core::shapes::surface_interaction;
 use zrak_scene::arena::SceneArena;
-use zrak_scene::desc::{ObjectDesc, ScaleDesc, TransformStep, Triple};
+use zrak_scene::desc::{MeshDesc, ObjectDesc, ScaleDesc, TransformStep, Triple};
 
 /// Random numbers.
 struct Rng(u32);
@@ -71,7 +72,8 @@ fn random_object(rng: &mut Rng, size: f64) -> ObjectDesc {
             return e;
         }
     };
-    let object = match rng.below(7) {
+    let m = || "m".to_owned();
+    let object = match rng.below(11) {
         0 => scenes::sphere(c, r, "m"),
         1 => scenes::moving_sphere(c, rng.point(size), r, "m"),
         2 => {
@@ -89,7 +91,39 @@ fn random_object(rng: &mut Rng, size: f64) -> ObjectDesc {
             let add = |e: Triple| [c[0] + e[0], c[1] + e[1], c[2] + e[2]];
             scenes::triangle([c, add(u), add(v)], "m")
         }
-        5 => scenes::medium(scenes::in_sphere(c, r), 1.0 / r, "mist"),
+        5 => {
+            let (phi_max_deg, inner_radius) =
+                if rng.below(2) == 0 { (360.0, 0.0) } else { (200.0, 0.3 * r) };
+            let (height, radius, material) = (c[2], r, m());
+            let transform = vec![TransformStep::Translate([c[0], c[1], 0.0])];
+            ObjectDesc::Disk { height, radius, inner_radius, phi_max_deg, material, transform }
+        }
+        6 => {
+            let phi_max_deg = if rng.below(2) == 0 { 360.0 } else { 100.0 };
+            let transform = vec![TransformStep::Translate(c)];
+            let (radius, z_min, z_max) = (r, -r, 2.0 * r);
+            ObjectDesc::Cylinder { radius, z_min, z_max, phi_max_deg, material: m(), transform }
+        }
+        7 => {
+            let mesh = ["tetrahedron", "grid"][rng.below(2) as usize].to_owned();
+            let scale = TransformStep::Scale(ScaleDesc::Uniform(r));
+            let transform = vec![scale, TransformStep::Translate(c)];
+            let flip = rng.below(2) == 0;
+            ObjectDesc::Mesh { mesh, material: m(), group_materials: Vec::new(), flip, transform }
+        }
+        8 => {
+            let scale = TransformStep::Scale(ScaleDesc::Uniform(r));
+            let transform = vec![scale, TransformStep::Translate(c)];
+            let transform_end = (rng.below(2) == 0).then(|| {
+                vec![
+                    scale,
+                    TransformStep::RotateZDeg(30.0),
+                    TransformStep::Translate(rng.point(size)),
+                ]
+            });
+            ObjectDesc::Instance { prototype: "pair".to_owned(), transform, transform_end }
+        }
+        9 => scenes::medium(scenes::in_sphere(c, r), 1.0 / r, "mist"),
         _ => scenes::medium(scenes::in_box(c, corner(r)), 3.0 / r, "mist"),
     };
     match rng.below(4) {
@@ -109,6 +143,23 @@ fn random_scene(rng: &mut Rng, n: u32, size: f64) -> Option<std::sync::Arc<Scene
     let mut desc = scenes::scene([4, 4], 1.0);
     desc.materials.insert("m".to_owned(), scenes::lambertian(0.5));
     desc.materials.insert("mist".to_owned(), scenes::isotropic(0.5));
+    let (tetrahedron, grid) = meshes();
+    desc.meshes.insert("tetrahedron".to_owned(), tetrahedron);
+    desc.meshes.insert("grid".to_owned(), grid);
+    desc.prototypes.insert(
+        "pair".to_owned(),
+        vec![
+            scenes::sphere([0.0; 3], 1.0, "m"),
+            ObjectDesc::Mesh {
+                mesh: "grid".to_owned(),
+                material: "m".to_owned(),
+                group_materials: Vec::new(),
+                flip: false,
+                transform: vec![TransformStep::RotateXDeg(40.0)],
+            },
+            scenes::cuboid([0.5, -1.0, -1.0], [1.5, 1.0, 1.0], "m"),
+        ],
+    );
     while (desc.objects.len() as u32) < n {
         let object = random_object(rng, size);
         // Now and then the same once more: ties.
@@ -120,16 +171,50 @@ fn random_scene(rng: &mut Rng, n: u32, size: f64) -> Option<std::sync::Arc<Scene
     zrak_scene::validate::validate(&desc).is_empty().then(|| common::arena(&desc))
 }
 
+/// A closed mesh, and one of enough triangles to be shared.
+fn meshes() -> (MeshDesc, MeshDesc) {
+    let mesh = |positions, triangles| MeshDesc::Inline {
+        positions,
+        triangles,
+        normals: Vec::new(),
+        uvs: Vec::new(),
+        colors: Vec::new(),
+    };
+    let corners = vec![[1.0, 1.0, 1.0], [-1.0, -1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, -1.0, -1.0]];
+    let tetrahedron = mesh(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]);
+    let n = 8_u32;
+    let point = |i: u32| {
+        let (x, y) = (i % (n + 1), i / (n + 1));
+        [x as f32 / 4.0 - 1.0, y as f32 / 4.0 - 1.0, ((x * y) % 3) as f32 * 0.1]
+    };
+    let cell = |i: u32| {
+        let a = i % n + i / n * (n + 1);
+        [[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]
+    };
+    let positions = (0..(n + 1) * (n + 1)).map(point).collect();
+    (tetrahedron, mesh(positions, (0..n * n).flat_map(cell).collect()))
+}
+
 fn leaves(view: &SceneView) -> Vec<PrimRef> {
-    let nodes = (0..view.nodes2.len()).flat_map(|i| view.nodes2.get(i).children);
-    nodes.filter(|child| !child.is_node() && *child != PrimRef::NONE).collect()
+    let mut leaves = Vec::new();
+    let mut links = vec![PrimRef::new(PrimKind::Node, 0)];
+    while let Some(link) = links.pop() {
+        if link.is_node() {
+            let children = view.nodes2.get(link.index()).children;
+            links.extend(children.into_iter().filter(|child| *child != PrimRef::NONE));
+        } else {
+            leaves.push(link);
+        }
+    }
+    leaves
 }
 
 #[test]
 fn all_ways_find_the_same_hit() {
     let mut rng = Rng(1);
     let (mut n_hits, mut n_rays, mut n_scenes) = (0, 0, 0);
-    let mut kinds = [0; 8];
+    let mut kinds = [0; 11];
+    let mut n_in_instances = 0;
     while n_scenes < 300 {
         let n = [1, 2, 3, 8, 30, 150][rng.below(6) as usize];
         let size = [1e-3, 1.0, 1e4][rng.below(3) as usize];
@@ -176,6 +261,7 @@ fn all_ways_find_the_same_hit() {
             if let Some(hit) = expected {
                 n_hits += 1;
                 kinds[hit.prim.kind().unwrap() as usize] += 1;
+                n_in_instances += u32::from(hit.instance != NO_INSTANCE);
                 origin = if hit.prim.kind() == Some(PrimKind::Medium) {
                     ray.at(hit.t)
                 } else {
@@ -187,5 +273,7 @@ fn all_ways_find_the_same_hit() {
     }
     assert!(n_hits * 12 > n_rays, "{n_hits} hits of {n_rays} rays");
     // Every kind of primitive was hit.
-    assert!(kinds[1..].iter().all(|&n| n > 400), "{kinds:?}");
+    let hittable = |kind: usize| kind != PrimKind::Instance as usize;
+    assert!((1..11).filter(|&k| hittable(k)).all(|k| kinds[k] > 400), "{kinds:?}");
+    assert!(n_in_instances > 10_000, "{n_in_instances}");
 }

@@ -1,6 +1,5 @@
 //! Integrators: how light is gathered along paths.
 
-mod direct;
 mod naive;
 
 #[cfg(test)]

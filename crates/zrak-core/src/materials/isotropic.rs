@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::Scatter;
-use crate::math::{Vec3, square_to_uniform_sphere};
+use crate::math::{Color, Vec3, square_to_uniform_sphere};
 use crate::sampler::{BounceDim, Sampler};
 use crate::scene::SceneView;
 use crate::textures::{ColorInput, TextureContext};
@@ -17,6 +17,13 @@ pub struct Isotropic {
 }
 
 impl Isotropic {
+    /// Single-scattering albedo at the world-space point `p`.
+    #[inline(always)]
+    #[must_use]
+    pub fn albedo_at(&self, scene: &SceneView, p: Vec3) -> Color {
+        self.albedo.evaluate_share(scene, &TextureContext::in_space(p))
+    }
+
     /// Direction after a collision at the world-space point `p`.
     #[inline(always)]
     #[must_use]
@@ -26,7 +33,6 @@ impl Isotropic {
             sampler.at_bounce(BounceDim::DirectionV),
         );
         // Off by rounding; directions are of unit length.
-        let attenuation = self.albedo.evaluate_share(scene, &TextureContext::in_space(p));
-        Scatter { wi: wi.normalized(), attenuation }
+        Scatter { wi: wi.normalized(), attenuation: self.albedo_at(scene, p) }
     }
 }

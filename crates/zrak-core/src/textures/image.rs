@@ -2,8 +2,8 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use super::TextureArrays;
 use crate::math::{Color, floor, max, min};
-use crate::scene::SceneView;
 
 /// Texels are one word: red, green, blue as 8-bit sRGB codes, red in the lowest bits.
 pub const TEXELS_SRGB8: u32 = 0;
@@ -35,7 +35,7 @@ impl ImageTexture {
     /// Colour at texture coordinates `uv`.
     #[inline(always)]
     #[must_use]
-    pub fn evaluate(&self, scene: &SceneView, uv: [f32; 2]) -> Color {
+    pub(crate) fn evaluate(&self, scene: &TextureArrays, uv: [f32; 2]) -> Color {
         // Without the bounds, huge coordinates would lead out of the image.
         let u = max(0.0, min(1.0, uv[0] - floor(uv[0]) as f32));
         let v = max(0.0, min(1.0, uv[1]));
@@ -55,7 +55,7 @@ impl ImageTexture {
 
     /// Linear colour of a texel, given by indices up to one image beyond its rim.
     #[inline(always)]
-    fn texel(&self, scene: &SceneView, ix: i32, iy: i32) -> Color {
+    fn texel(&self, scene: &TextureArrays, ix: i32, iy: i32) -> Color {
         let (width, height) = (self.width as i32, self.height as i32);
         let x = if ix < 0 {
             ix + width

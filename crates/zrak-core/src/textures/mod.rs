@@ -22,6 +22,7 @@ pub use perlin::{perlin, turbulence};
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::accessor::Array;
 use crate::math::{Color, Vec3};
 use crate::scene::{SceneView, TextureKind, TextureRef};
 
@@ -105,23 +106,50 @@ impl ColorInput {
     #[inline(always)]
     #[must_use]
     pub fn evaluate(&self, scene: &SceneView, at: &TextureContext) -> Color {
-        let mut input = *self;
-        let has = |kind| scene.kinds.has_texture(kind);
-        // Checkers lead to other textures; the host made sure that they do not lead in a circle.
-        loop {
-            let i = input.texture.index();
-            match input.texture.kind() {
-                Some(kind @ TextureKind::Checker) if has(kind) => {
-                    input = scene.checkers.get(i).pick(at.p)
-                }
-                Some(kind @ TextureKind::Noise) if has(kind) => {
-                    return scene.noises.get(i).evaluate(at.p);
-                }
-                Some(kind @ TextureKind::Image) if has(kind) => {
-                    return scene.images.get(i).evaluate(scene, at.uv);
-                }
-                _ => return input.solid,
-            }
+        const SOLID: u32 = 1 << TextureKind::Solid as u32;
+        if scene.kinds.textures == SOLID || self.texture.0 == 0 {
+            return self.solid;
         }
+        evaluate(&TextureArrays::of(scene), *self, at)
+    }
+}
+
+/// What textures are made of.
+#[derive(Clone, Copy)]
+pub(crate) struct TextureArrays<'a> {
+    checkers: Array<'a, Checker>,
+    noises: Array<'a, Noise>,
+    images: Array<'a, ImageTexture>,
+    pub(crate) texels: Array<'a, u32>,
+    pub(crate) srgb_table: Array<'a, f32>,
+}
+
+impl<'a> TextureArrays<'a> {
+    #[inline(always)]
+    pub(crate) fn of(scene: &SceneView<'a>) -> Self {
+        Self {
+            checkers: scene.checkers,
+            noises: scene.noises,
+            images: scene.images,
+            texels: scene.texels,
+            srgb_table: scene.srgb_table,
+        }
+    }
+}
+
+/// Colour of a texture at a point. It is a function of its own because materials look at many
+/// textures, and a copy for each look would make the kernels many times as large.
+#[inline(never)]
+fn evaluate(arrays: &TextureArrays, input: ColorInput, at: &TextureContext) -> Color {
+    let mut input = input;
+    // Checkers lead to other textures; the host made sure that they do not lead in a circle.
+    while let Some(TextureKind::Checker) = input.texture.kind() {
+        input = arrays.checkers.get(input.texture.index()).pick(at.p);
+    }
+    let i = input.texture.index();
+    match input.texture.kind() {
+        Some(TextureKind::Noise) => arrays.noises.get(i).evaluate(at.p),
+        Some(TextureKind::Image) => arrays.images.get(i).evaluate(arrays, at.uv),
+        _ => input.solid,
     }
 }

@@ -1,5 +1,6 @@
 //! The scenes that come with zrak: those of *Ray Tracing in One Weekend* and *Ray Tracing: The Next
-//! Week* (Shirley, Black and Hollasch, version 4), as the books build them, and one with everything.
+//! Week* (Shirley, Black and Hollasch, version 4), as the books build them, one with everything, and a workshop of
+//! what real scenes have besides.
 //!
 //! Where a book draws random numbers, the scene draws them in the same order from its own seeded
 //! generator, so a built-in scene is the same on every machine but not sphere for sphere the book's.
@@ -18,6 +19,7 @@ mod perlin_spheres;
 mod quads;
 mod rng;
 mod simple_light;
+mod workshop;
 
 #[cfg(test)]
 mod tests;
@@ -84,6 +86,11 @@ pub fn all() -> &'static [Builtin] {
             name: "everything",
             summary: "One of each shape, material, texture and option, from a scene file",
             build: everything::everything,
+        },
+        Builtin {
+            name: "workshop",
+            summary: "Meshes, instances, lights and media: what real scenes are made of, in small",
+            build: workshop::workshop,
         },
     ]
 }

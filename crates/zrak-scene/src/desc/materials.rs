@@ -369,6 +369,26 @@ pub enum LightSides {
     Front,
 }
 
+impl MaterialDesc {
+    /// A surface of the material `base` that has nothing else.
+    #[must_use]
+    pub fn surface(base: impl Into<String>) -> Self {
+        Self::Surface {
+            base: base.into(),
+            emission: None,
+            emission_strength: 1.0,
+            emission_sides: LightSides::Both,
+            alpha: None,
+            alpha_cutoff: None,
+            normal_map: None,
+            normal_scale: 1.0,
+            bump: None,
+            medium: None,
+            one_sided: false,
+        }
+    }
+}
+
 impl LightSides {
     fn is_both(&self) -> bool {
         *self == Self::Both

@@ -314,6 +314,10 @@ fn accepts_type(schema: &Value, value: &DeValue<'_>) -> bool {
                 | ("boolean", DeValue::Boolean(_))
         )
     };
+    // Something that may be left out, of a type that is itself one of several.
+    if let Some(variants) = schema.get("anyOf").and_then(Value::as_array) {
+        return variants.iter().any(|variant| accepts_type(resolve(variant), value));
+    }
     match &schema["type"] {
         Value::String(name) => accepts(name),
         Value::Array(names) => names.iter().filter_map(Value::as_str).any(accepts),

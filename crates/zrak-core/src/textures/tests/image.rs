@@ -4,6 +4,7 @@ use super::super::{ImageTexture, TEXELS_LINEAR, TEXELS_SRGB8};
 use crate::math::Color;
 use crate::scene::SceneView;
 use crate::testing::{Rng, TestScene};
+use crate::textures::TextureArrays;
 
 const WIDTH: u32 = 5;
 const HEIGHT: u32 = 3;
@@ -39,17 +40,21 @@ fn nearest_is_the_texel_that_the_point_falls_into() {
                 let u = (x as f32 + du) / WIDTH as f32;
                 // v runs upwards, rows downwards.
                 let v = 1.0 - (y as f32 + dv) / HEIGHT as f32;
-                assert_eq!(image.evaluate(&view, [u, v]), texel(x, y), "{u} {v}");
+                assert_eq!(
+                    image.evaluate(&TextureArrays::of(&view), [u, v]),
+                    texel(x, y),
+                    "{u} {v}"
+                );
             }
         }
     }
     // Repeats in u, ends in v.
-    assert_eq!(image.evaluate(&view, [1.1, 0.9]), texel(0, 0));
-    assert_eq!(image.evaluate(&view, [-0.1, 0.9]), texel(4, 0));
-    assert_eq!(image.evaluate(&view, [0.1, 7.0]), texel(0, 0));
-    assert_eq!(image.evaluate(&view, [0.1, -7.0]), texel(0, 2));
-    assert_eq!(image.evaluate(&view, [1.0, 1.0]), texel(0, 0));
-    assert_eq!(image.evaluate(&view, [0.0, 0.0]), texel(0, 2));
+    assert_eq!(image.evaluate(&TextureArrays::of(&view), [1.1, 0.9]), texel(0, 0));
+    assert_eq!(image.evaluate(&TextureArrays::of(&view), [-0.1, 0.9]), texel(4, 0));
+    assert_eq!(image.evaluate(&TextureArrays::of(&view), [0.1, 7.0]), texel(0, 0));
+    assert_eq!(image.evaluate(&TextureArrays::of(&view), [0.1, -7.0]), texel(0, 2));
+    assert_eq!(image.evaluate(&TextureArrays::of(&view), [1.0, 1.0]), texel(0, 0));
+    assert_eq!(image.evaluate(&TextureArrays::of(&view), [0.0, 0.0]), texel(0, 2));
 }
 
 /// Bilinear lookup in `f64`.
@@ -69,7 +74,7 @@ fn exact(u: f64, v: f64, channel: usize) -> f64 {
 }
 
 fn check_bilinear(view: &SceneView, u: f32, v: f32) {
-    let color = image(TEXELS_LINEAR, 1, 7).evaluate(view, [u, v]).to_array();
+    let color = image(TEXELS_LINEAR, 1, 7).evaluate(&TextureArrays::of(view), [u, v]).to_array();
     for (channel, x) in color.into_iter().enumerate() {
         let exact = exact(f64::from(u), f64::from(v), channel);
         assert!((f64::from(x) - exact).abs() < 1e-5, "{x} {exact} at {u} {v}");
@@ -105,13 +110,14 @@ fn codes_go_through_the_table() {
         for x in 0..WIDTH {
             let uv = [(x as f32 + 0.5) / WIDTH as f32, 1.0 - (y as f32 + 0.5) / HEIGHT as f32];
             let expected = Color::new(3.0 * x as f32, 3.0 * y as f32, 600.0 + 3.0 * x as f32);
-            assert_eq!(image(TEXELS_SRGB8, 0, 0).evaluate(&view, uv), expected);
+            assert_eq!(image(TEXELS_SRGB8, 0, 0).evaluate(&TextureArrays::of(&view), uv), expected);
         }
     }
     // The mean is of linear values, not of codes.
     scene.srgb_table = (0..256).map(|i| (i * i) as f32).collect();
     let view = scene.view();
-    let between = image(TEXELS_SRGB8, 1, 0).evaluate(&view, [2.0 / WIDTH as f32, 0.5]);
+    let between =
+        image(TEXELS_SRGB8, 1, 0).evaluate(&TextureArrays::of(&view), [2.0 / WIDTH as f32, 0.5]);
     assert!((between.r - 2.5).abs() < 1e-4, "{between:?}");
 }
 
@@ -122,7 +128,8 @@ fn extreme_coordinates_read_some_texel() {
     for bilinear in [0, 1] {
         for u in [1e9, -1e9, 1e20, -1e20, f32::MAX, f32::MIN] {
             for v in [1e9, -1e9, f32::MAX, f32::MIN] {
-                let color = image(TEXELS_LINEAR, bilinear, 7).evaluate(&view, [u, v]);
+                let color =
+                    image(TEXELS_LINEAR, bilinear, 7).evaluate(&TextureArrays::of(&view), [u, v]);
                 assert!((0.0..=1.0).contains(&color.g), "{color:?} at {u} {v}");
             }
         }
@@ -139,7 +146,7 @@ fn a_single_texel_is_everywhere() {
         let image = ImageTexture { width: 1, height: 1, ..image(TEXELS_LINEAR, bilinear, 0) };
         for _ in 0..1000 {
             let uv = [rng.range(-2.0, 2.0) as f32, rng.range(-2.0, 2.0) as f32];
-            let c = image.evaluate(&view, uv);
+            let c = image.evaluate(&TextureArrays::of(&view), uv);
             assert!((c.r - 0.25).abs() < 1e-6 && (c.b - 1.0).abs() < 1e-6);
         }
     }
