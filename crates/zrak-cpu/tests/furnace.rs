@@ -59,6 +59,50 @@ fn check(name: &str, desc: &SceneDesc) {
     assert!(failures.is_empty(), "{name}: {failures:#?}");
 }
 
+fn moved(by: [f64; 3]) -> TransformStep {
+    TransformStep::Translate(by)
+}
+
+fn mesh(mesh: &str, material: &str, transform: Vec<TransformStep>) -> ObjectDesc {
+    let (mesh, material) = (mesh.to_owned(), material.to_owned());
+    ObjectDesc::Mesh { mesh, material, group_materials: Vec::new(), flip: false, transform }
+}
+
+/// Round and flat meshes, and a can of a cylinder and two disks.
+fn add_meshes(desc: &mut SceneDesc) {
+    desc.meshes = (zrak_scene::builtin::find("workshop").unwrap().build)().meshes;
+    // With normals of their own, meshes are not what they look like, and some light is lost.
+    for mesh in desc.meshes.values_mut() {
+        if let zrak_scene::desc::MeshDesc::Inline { normals, .. } = mesh {
+            normals.clear();
+        }
+    }
+    let lid = |height, radius, transform| ObjectDesc::Disk {
+        height,
+        radius,
+        inner_radius: 0.0,
+        phi_max_deg: 360.0,
+        material: "m".to_owned(),
+        transform,
+    };
+    desc.prototypes.insert(
+        "can".to_owned(),
+        vec![
+            ObjectDesc::Cylinder {
+                radius: 1.0,
+                z_min: -1.0,
+                z_max: 1.0,
+                phi_max_deg: 360.0,
+                material: "m".to_owned(),
+                transform: Vec::new(),
+            },
+            // A little larger than the cylinder: rims of disks and cylinders are not watertight.
+            lid(0.999, 1.001, Vec::new()),
+            lid(0.999, 1.001, vec![TransformStep::RotateXDeg(180.0)]),
+        ],
+    );
+}
+
 fn turned(object: ObjectDesc) -> ObjectDesc {
     let axis = [1.0, 2.0, 3.0];
     group(vec![object], vec![TransformStep::Rotate { axis, angle_deg: 35.0 }])
@@ -82,9 +126,33 @@ fn shapes(material: &MaterialDesc) -> Vec<(&'static str, SceneDesc)> {
         ("turned box", vec![turned(unit_box())]),
         ("stretched sphere", vec![stretched(sphere([0.0; 3], 1.0, "m"))]),
         ("triangles", vec![turned(group(triangle_cube("m"), Vec::new()))]),
+        ("mesh", vec![turned(mesh("ball", "m", Vec::new()))]),
+        ("flat mesh", vec![stretched(mesh("gem", "m", Vec::new()))]),
+        (
+            "shared mesh",
+            vec![
+                mesh("ball", "m", vec![moved([-0.8, 0.0, 0.0])]),
+                stretched(mesh("ball", "m", vec![moved([0.9, 0.1, 0.0])])),
+            ],
+        ),
+        (
+            "moving instance",
+            vec![ObjectDesc::Instance {
+                prototype: "can".to_owned(),
+                transform: vec![TransformStep::RotateXDeg(30.0)],
+                transform_end: Some(vec![TransformStep::RotateXDeg(50.0), moved([0.3, 0.2, 0.0])]),
+            }],
+        ),
     ];
     let materials = [("m", material.clone())];
-    cases.into_iter().map(|(name, objects)| (name, furnace(&materials, objects))).collect()
+    cases
+        .into_iter()
+        .map(|(name, objects)| {
+            let mut desc = furnace(&materials, objects);
+            add_meshes(&mut desc);
+            (name, desc)
+        })
+        .collect()
 }
 
 #[test]
@@ -229,7 +297,9 @@ fn closed_lights() {
 /// What leaves a convex body of albedo 1/2 sees nothing but the glow: exactly half of it.
 #[test]
 fn grey_convex_shapes_are_exactly_half_as_bright() {
-    for (name, mut desc) in shapes(&lambertian(0.5)) {
+    // Two bodies see each other.
+    let is_one = |case: &(&str, SceneDesc)| case.0 != "shared mesh";
+    for (name, mut desc) in shapes(&lambertian(0.5)).into_iter().filter(is_one) {
         // One segment to the body and one away from it: a path that needs more is wrong.
         desc.render.max_depth = 2;
         for size in [1e-3, 1.0, 1e5] {
