@@ -66,6 +66,16 @@ macro_rules! for_each_scene_array {
             isotropics: $crate::materials::Isotropic,
             /// Emitters.
             diffuse_lights: $crate::materials::DiffuseLight,
+            /// Metals by Fresnel's equations.
+            conductors: $crate::materials::Conductor,
+            /// Rough clear dielectrics.
+            rough_dielectrics: $crate::materials::RoughDielectric,
+            /// Thin panes.
+            thin_dielectrics: $crate::materials::ThinDielectric,
+            /// Diffuse reflectors that light goes through.
+            diffuse_transmissions: $crate::materials::DiffuseTransmission,
+            /// Coated bases.
+            layereds: $crate::materials::Layered,
             /// Mixed materials.
             mixes: $crate::materials::Mix,
             /// Materials with more about their surface.
@@ -189,6 +199,11 @@ impl SceneView<'_> {
             (self.dielectrics.is_empty(), MaterialKind::Dielectric),
             (self.isotropics.is_empty(), MaterialKind::Isotropic),
             (self.diffuse_lights.is_empty(), MaterialKind::DiffuseLight),
+            (self.conductors.is_empty(), MaterialKind::Conductor),
+            (self.rough_dielectrics.is_empty(), MaterialKind::RoughDielectric),
+            (self.thin_dielectrics.is_empty(), MaterialKind::ThinDielectric),
+            (self.diffuse_transmissions.is_empty(), MaterialKind::DiffuseTransmission),
+            (self.layereds.is_empty(), MaterialKind::Layered),
             (self.mixes.is_empty(), MaterialKind::Mix),
             (self.surfaces.is_empty(), MaterialKind::Surface),
             (false, MaterialKind::Interface),
@@ -401,6 +416,16 @@ tagged_handle! {
         Isotropic = 4,
         /// [`crate::materials::DiffuseLight`].
         DiffuseLight = 5,
+        /// [`crate::materials::Conductor`].
+        Conductor = 6,
+        /// [`crate::materials::RoughDielectric`].
+        RoughDielectric = 7,
+        /// [`crate::materials::ThinDielectric`].
+        ThinDielectric = 8,
+        /// [`crate::materials::DiffuseTransmission`].
+        DiffuseTransmission = 9,
+        /// [`crate::materials::Layered`].
+        Layered = 10,
         /// [`crate::materials::Mix`].
         Mix = 12,
         /// Not there: light goes straight through.

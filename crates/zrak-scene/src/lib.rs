@@ -9,4 +9,4 @@ pub mod lower;
 pub mod schema;
 pub mod validate;
 
-mod suggest;
+pub mod suggest;

@@ -10,13 +10,10 @@ use zrak_mesh::TriangleMesh;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum MeshDesc {
-    /// PLY or OBJ file, which may be gzip-ed.
+    /// PLY file, which may be gzip-ed.
     File {
         /// The file, relative to the scene file.
         path: String,
-        /// Whether to make smooth normals if the file has none, across edges of up to this angle.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        smooth_angle_deg: Option<f64>,
     },
     /// The numbers themselves.
     Inline {
