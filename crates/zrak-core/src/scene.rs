@@ -76,6 +76,8 @@ macro_rules! for_each_scene_array {
             diffuse_transmissions: $crate::materials::DiffuseTransmission,
             /// Coated bases.
             layereds: $crate::materials::Layered,
+            /// Materials that are not there; the records say nothing.
+            interfaces: u32,
             /// Mixed materials.
             mixes: $crate::materials::Mix,
             /// Materials with more about their surface.
@@ -135,6 +137,25 @@ impl Kinds {
             | 1 << MaterialKind::Metal as u32
             | 1 << MaterialKind::Dielectric as u32,
         textures: 1 << TextureKind::Solid as u32,
+        features: 0,
+    };
+
+    /// What the scenes of *Ray Tracing in One Weekend* and *The Next Week* are made of.
+    pub const BOOKS: Self = Self {
+        prims: 1 << PrimKind::Sphere as u32
+            | 1 << PrimKind::MovingSphere as u32
+            | 1 << PrimKind::Quad as u32
+            | 1 << PrimKind::Box as u32
+            | 1 << PrimKind::Triangle as u32
+            | 1 << PrimKind::Instance as u32
+            | 1 << PrimKind::Medium as u32,
+        materials: Self::PLAIN_SPHERES.materials
+            | 1 << MaterialKind::Isotropic as u32
+            | 1 << MaterialKind::DiffuseLight as u32,
+        textures: 1 << TextureKind::Solid as u32
+            | 1 << TextureKind::Checker as u32
+            | 1 << TextureKind::Noise as u32
+            | 1 << TextureKind::Image as u32,
         features: 0,
     };
 
@@ -206,7 +227,7 @@ impl SceneView<'_> {
             (self.layereds.is_empty(), MaterialKind::Layered),
             (self.mixes.is_empty(), MaterialKind::Mix),
             (self.surfaces.is_empty(), MaterialKind::Surface),
-            (false, MaterialKind::Interface),
+            (self.interfaces.is_empty(), MaterialKind::Interface),
         ];
         let textures = [
             (false, TextureKind::Solid),

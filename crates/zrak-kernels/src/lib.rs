@@ -43,6 +43,11 @@ render_kernel! {
 }
 
 render_kernel! {
+    /// Scenes such as the books'.
+    render_naive_books, Kinds::BOOKS
+}
+
+render_kernel! {
     /// Scenes of plain spheres.
     render_naive_plain_spheres, Kinds::PLAIN_SPHERES
 }

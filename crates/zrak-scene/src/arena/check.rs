@@ -152,7 +152,7 @@ fn check_material(scene: &SceneView, material: MaterialRef) -> Check {
         Some(MaterialKind::DiffuseTransmission) => scene.diffuse_transmissions.len(),
         Some(MaterialKind::Layered) => scene.layereds.len(),
         Some(MaterialKind::Mix) => scene.mixes.len(),
-        Some(MaterialKind::Interface) => 1,
+        Some(MaterialKind::Interface) => scene.interfaces.len(),
         Some(MaterialKind::Surface) => scene.surfaces.len(),
         None => 0,
     };

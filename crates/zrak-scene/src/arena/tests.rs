@@ -149,6 +149,7 @@ fn good() -> SceneArrays {
     a.thin_dielectrics.push(bytemuck::Zeroable::zeroed());
     a.diffuse_transmissions.push(bytemuck::Zeroable::zeroed());
     a.layereds.push(bytemuck::Zeroable::zeroed());
+    a.interfaces.push(0);
     a.homogeneous_media.push(bytemuck::Zeroable::zeroed());
     a.lights.push(bytemuck::Zeroable::zeroed());
     let kinds = [PrimKind::Sphere, PrimKind::Quad, PrimKind::Medium, PrimKind::Triangle];

@@ -368,7 +368,10 @@ impl<'a> Lowering<'a, '_> {
                 self.arrays.mixes.push(Mix { amount, materials: parts.map(|part| part.handle) });
                 (MaterialKind::Mix, self.arrays.mixes.len(), needs_uv)
             }
-            MaterialDesc::Interface => (MaterialKind::Interface, 1, false),
+            MaterialDesc::Interface => {
+                self.arrays.interfaces.push(0);
+                (MaterialKind::Interface, self.arrays.interfaces.len(), false)
+            }
             MaterialDesc::Surface { .. } => return self.surface(desc),
             MaterialDesc::Conductor { metal, roughness } => {
                 let (conductor, needs_uv) = self.conductor(metal, roughness);
