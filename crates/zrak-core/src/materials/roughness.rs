@@ -35,14 +35,19 @@ impl Roughness {
     #[inline(always)]
     #[must_use]
     pub fn evaluate(&self, scene: &SceneView, at: &TextureContext) -> TrowbridgeReitz {
-        let alpha = |input: &ScalarInput| {
-            let r = max(0.0, min(1.0, input.evaluate(scene, at)));
-            match self.map {
-                ROUGHNESS_SQRT => sqrt(r),
-                ROUGHNESS_SQUARE => r * r,
-                _ => r,
-            }
-        };
-        TrowbridgeReitz::new(alpha(&self.u), alpha(&self.v))
+        // No closure: one that is not inlined would take the scene by its address, and a scene that has
+        // an address is no longer known to lack what its kernel lacks.
+        let (u, v) = (self.u.evaluate(scene, at), self.v.evaluate(scene, at));
+        TrowbridgeReitz::new(self.alpha(u), self.alpha(v))
+    }
+
+    #[inline(always)]
+    fn alpha(&self, roughness: f32) -> f32 {
+        let r = max(0.0, min(1.0, roughness));
+        match self.map {
+            ROUGHNESS_SQRT => sqrt(r),
+            ROUGHNESS_SQUARE => r * r,
+            _ => r,
+        }
     }
 }

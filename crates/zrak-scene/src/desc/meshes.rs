@@ -6,6 +6,23 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use zrak_mesh::TriangleMesh;
 
+impl MeshDesc {
+    /// The mesh with its numbers written out, if it is one in memory.
+    #[must_use]
+    pub fn inlined(&self) -> Self {
+        match self {
+            Self::Loaded(mesh) => Self::Inline {
+                positions: mesh.positions.clone(),
+                triangles: mesh.triangles.clone(),
+                normals: mesh.normals.clone(),
+                uvs: mesh.uvs.clone(),
+                colors: mesh.colors.clone(),
+            },
+            other => other.clone(),
+        }
+    }
+}
+
 /// A triangle mesh, by the file it is in or by its numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
@@ -31,7 +48,7 @@ pub enum MeshDesc {
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         colors: Vec<[f32; 4]>,
     },
-    /// A mesh in memory, from an importer or a program; it is written as a file beside the scene.
+    /// A mesh in memory, from an importer or a program; in a scene file its numbers are written out.
     #[serde(skip)]
     Loaded(#[schemars(skip)] Arc<TriangleMesh>),
 }

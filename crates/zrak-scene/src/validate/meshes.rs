@@ -58,7 +58,7 @@ fn mesh_of(checker: &mut Checker<'_>, mesh: &MeshDesc) {
 }
 
 fn numbers<const N: usize>(checker: &mut Checker<'_>, key: &str, values: &[[f32; N]]) {
-    let is_bad = |v: &[f32; N]| v.iter().any(|x| !(x.abs() <= 1e12));
+    let is_bad = |v: &[f32; N]| v.iter().any(|x| !(-1e12..=1e12).contains(x));
     if let Some(i) = values.iter().position(is_bad) {
         checker.enter(key, |checker| {
             let message = "numbers must lie in [-1e12, 1e12]";
