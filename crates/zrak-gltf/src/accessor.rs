@@ -204,10 +204,11 @@ pub(crate) fn open<'a>(
             let index_component = Component::of_code(code)
                 .filter(|c| c.is_unsigned())
                 .ok_or_else(|| unknown(".sparse.indices.componentType", code))?;
-            let n = usize::try_from(sparse.count).ok().filter(|&n| n <= count).ok_or_else(|| {
-                let message = format!("{} of {count} elements cannot differ", sparse.count);
-                Error::invalid(at(".sparse.count"), message)
-            })?;
+            let n =
+                usize::try_from(sparse.count).ok().filter(|&n| n <= count).ok_or_else(|| {
+                    let message = format!("{} of {count} elements cannot differ", sparse.count);
+                    Error::invalid(at(".sparse.count"), message)
+                })?;
             let part = |key: &str, view_index: usize, offset: u64, size: usize| {
                 let view = buffers.view(view_index, at(&format!(".sparse.{key}.bufferView")))?;
                 let length = n as u64 * size as u64;

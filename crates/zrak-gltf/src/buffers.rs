@@ -116,8 +116,10 @@ impl<'a> Buffers<'a> {
         if let Some(bytes) = &self.decoded[index] {
             if bytes.len() as u64 != view.byte_length {
                 let n = bytes.len();
-                let message =
-                    format!("byteLength is {}, the compressed data has {n} bytes", view.byte_length);
+                let message = format!(
+                    "byteLength is {}, the compressed data has {n} bytes",
+                    view.byte_length
+                );
                 return Err(Error::invalid(at(), message));
             }
             return Ok(View { bytes, stride });

@@ -73,7 +73,8 @@ pub(crate) fn split(bytes: &[u8]) -> Result<Container<'_>, Error> {
 /// The binary form of JSON and bytes; none if its sizes do not fit their 32 bits.
 pub(crate) fn join(json: &[u8], bin: &[u8]) -> Option<Vec<u8>> {
     let padded = |n: usize| n.div_ceil(4) * 4;
-    let total = 12 + 8 + padded(json.len()) + if bin.is_empty() { 0 } else { 8 + padded(bin.len()) };
+    let total =
+        12 + 8 + padded(json.len()) + if bin.is_empty() { 0 } else { 8 + padded(bin.len()) };
     u32::try_from(total).ok()?;
     let mut bytes = Vec::with_capacity(total);
     bytes.extend_from_slice(MAGIC);

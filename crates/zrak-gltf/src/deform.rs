@@ -64,10 +64,10 @@ pub(crate) fn skin(
     let mut sums = vec![[[0.0_f64; 4]; 3]; n_vertices];
     let mut totals = vec![0.0_f64; n_vertices];
     for set in 0..4 {
-        let [joint_name, weight_name] =
-            ["JOINTS", "WEIGHTS"].map(|name| format!("{name}_{set}"));
-        let mut open =
-            |name: &str| source.attribute(&primitive.attributes, name, &[Kind::Vec4], n, &at, warnings);
+        let [joint_name, weight_name] = ["JOINTS", "WEIGHTS"].map(|name| format!("{name}_{set}"));
+        let mut open = |name: &str| {
+            source.attribute(&primitive.attributes, name, &[Kind::Vec4], n, &at, warnings)
+        };
         let (Some(ids), Some(weights)) = (open(&joint_name)?, open(&weight_name)?) else {
             break;
         };

@@ -97,8 +97,7 @@ fn walk(nodes: &[Node], roots: &[usize]) -> Vec<usize> {
 /// The map of a node from its own space to its parent's.
 fn local(node: &Node, i: usize, warnings: &mut Warnings) -> Result<Transform, Error> {
     let at = |key: &str| format!("nodes[{i}].{key}");
-    let has_steps =
-        node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
+    let has_steps = node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
     if let Some(m) = &node.matrix {
         if has_steps {
             warnings.note(at("matrix"), "the node has other transforms too, which are ignored");

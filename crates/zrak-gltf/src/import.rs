@@ -89,8 +89,7 @@ pub fn parse_gltf(
     let root = parse_json(container.json, options)?;
     let mut warnings = Warnings::default();
     extensions::check(&root, &mut warnings)?;
-    let buffers =
-        Buffers::load(&root, container.bin, resolver, options.allow_external, &budget)?;
+    let buffers = Buffers::load(&root, container.bin, resolver, options.allow_external, &budget)?;
     let source = Source { root: &root, buffers: &buffers, budget: &budget };
     let (desc, assets) = scene(&source, options, &mut warnings)?;
     Ok(Imported { desc, base_dir: PathBuf::new(), assets, warnings: warnings.into_list() })
@@ -196,7 +195,8 @@ fn scene(
         return Err(Error::new(ErrorKind::Invalid, "cameras", message, help));
     }
     if n_cameras > 1 {
-        let message = format!("the scene has {n_cameras} cameras; number {} is used", options.camera);
+        let message =
+            format!("the scene has {n_cameras} cameras; number {} is used", options.camera);
         warnings.note("cameras", message);
     }
     let placed = placer.finish(warnings)?;
@@ -224,4 +224,3 @@ fn scene(
     }
     Ok((desc, placed.materials.textures.assets))
 }
-

@@ -224,12 +224,8 @@ impl<'a> Placer<'a> {
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let location = format!("meshes[{}].primitives[{i}]", wanted.mesh);
             let has_colors = primitive.attributes.contains_key("COLOR_0");
-            let material = self.placed.materials.get(
-                primitive.material,
-                has_colors,
-                &location,
-                warnings,
-            )?;
+            let material =
+                self.placed.materials.get(primitive.material, has_colors, &location, warnings)?;
             let request = Request {
                 uv_set: material.uv_set,
                 needs_uv: material.needs_uv,

@@ -177,7 +177,16 @@ pub(crate) fn read(
             mesh.colors.iter_mut().for_each(|c| c[3] = 1.0);
         }
     }
-    deform::morph(source, primitive, request.weights, n, &selection, &mut mesh, location, warnings)?;
+    deform::morph(
+        source,
+        primitive,
+        request.weights,
+        n,
+        &selection,
+        &mut mesh,
+        location,
+        warnings,
+    )?;
     if let Some(joints) = request.joints {
         deform::skin(source, primitive, joints, n, &selection, &mut mesh, location, warnings)?;
     }
@@ -207,7 +216,8 @@ fn faces(
     };
     let Some(index) = primitive.indices else {
         if mode == 4 && !n.is_multiple_of(3) {
-            let message = format!("{n} vertices do not make whole triangles: the last are left out");
+            let message =
+                format!("{n} vertices do not make whole triangles: the last are left out");
             warnings.note(location, message);
         }
         budget.spend(&at, n_triangles(n) as u64, 12)?;
@@ -220,7 +230,8 @@ fn faces(
     }
     let n_corners = indices.count;
     if mode == 4 && !n_corners.is_multiple_of(3) {
-        let message = format!("{n_corners} indices do not make whole triangles: the last are left out");
+        let message =
+            format!("{n_corners} indices do not make whole triangles: the last are left out");
         warnings.note(&at, message);
     }
     // The corners, their triangles, and perhaps the list of those that are used.

@@ -168,7 +168,11 @@ impl<'a> Textures<'a> {
         Ok(path)
     }
 
-    fn find_path(&mut self, index: usize, warnings: &mut Warnings) -> Result<Option<String>, Error> {
+    fn find_path(
+        &mut self,
+        index: usize,
+        warnings: &mut Warnings,
+    ) -> Result<Option<String>, Error> {
         let source = self.source;
         let image = &source.root.images[index];
         let at = format!("images[{index}]");
@@ -203,7 +207,8 @@ impl<'a> Textures<'a> {
                 (bytes.into(), image.mime_type.as_deref().unwrap_or(""))
             }
             (None, None) => {
-                warnings.note(at, "the image has neither a `uri` nor a `bufferView`: it is left out");
+                warnings
+                    .note(at, "the image has neither a `uri` nor a `bufferView`: it is left out");
                 return Ok(None);
             }
         };
@@ -281,8 +286,7 @@ fn mapping(info: &TextureInfo) -> MappingDesc {
     let Some(t) = &info.extensions.transform else { return MappingDesc::Uv };
     let (s, c) = (libm::sin(t.rotation), libm::cos(t.rotation));
     let [sx, sy] = t.scale;
-    let [[a, b, tx], [d, e, ty]] =
-        [[c * sx, s * sy, t.offset[0]], [-s * sx, c * sy, t.offset[1]]];
+    let [[a, b, tx], [d, e, ty]] = [[c * sx, s * sy, t.offset[0]], [-s * sx, c * sy, t.offset[1]]];
     let matrix = [[a, -b, b + tx], [-d, e, 1.0 - e - ty]];
     if matrix == [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] {
         return MappingDesc::Uv;

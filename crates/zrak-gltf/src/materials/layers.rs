@@ -20,7 +20,10 @@ impl Materials<'_> {
             surface.specular_ior = ior.ior;
             if ior.ior < 1.0 {
                 // 0 stands for a perfect mirror in materials that were converted.
-                warnings.note(at("ior"), format!("an index of refraction of {} is taken as 1.5", ior.ior));
+                warnings.note(
+                    at("ior"),
+                    format!("an index of refraction of {} is taken as 1.5", ior.ior),
+                );
                 surface.specular_ior = 1.5;
             }
         }
@@ -48,7 +51,8 @@ impl Materials<'_> {
             let factor = sheen.sheen_color_factor.map(unit);
             let weight = factor.iter().fold(0.0_f64, |m, &x| m.max(x));
             if weight > 0.0 {
-                let texture = self.color_texture(sheen.sheen_color_texture.as_ref(), &at, warnings)?;
+                let texture =
+                    self.color_texture(sheen.sheen_color_texture.as_ref(), &at, warnings)?;
                 surface.fuzz_weight = weight.into();
                 surface.fuzz_color = self.textures.times(factor.map(|x| x / weight), texture);
                 let factor = unit(sheen.sheen_roughness_factor);
@@ -83,7 +87,8 @@ impl Materials<'_> {
         if let Some(anisotropy) = &e.anisotropy {
             let at = at("anisotropy");
             if anisotropy.anisotropy_texture.is_some() {
-                warnings.note(&at, "its texture is ignored: the whole surface has the same strength");
+                warnings
+                    .note(&at, "its texture is ignored: the whole surface has the same strength");
             }
             let half_turns = anisotropy.anisotropy_rotation / std::f64::consts::PI;
             if (half_turns - half_turns.round()).abs() > 1e-3 {
@@ -139,10 +144,12 @@ impl Materials<'_> {
                 // More than the index gives is what a larger index gives.
                 surface.specular_ior = ior_of(largest * reflectance_of(surface.specular_ior));
             } else {
-                warnings.note(&at, "a specular colour above 1 is taken as 1 where light goes through");
+                warnings
+                    .note(&at, "a specular colour above 1 is taken as 1 where light goes through");
             }
         }
-        let texture = self.color_texture(specular.specular_color_texture.as_ref(), &at, warnings)?;
+        let texture =
+            self.color_texture(specular.specular_color_texture.as_ref(), &at, warnings)?;
         surface.specular_color = self.textures.times(factor, texture);
         Ok(())
     }

@@ -101,7 +101,12 @@ impl<'a> Materials<'a> {
         Ok(done)
     }
 
-    fn translate(&mut self, work: &Work<'_>, name: &str, warnings: &mut Warnings) -> Result<(), Error> {
+    fn translate(
+        &mut self,
+        work: &Work<'_>,
+        name: &str,
+        warnings: &mut Warnings,
+    ) -> Result<(), Error> {
         let Work { material, at, .. } = work;
         let extensions = &material.extensions;
         let base = self.base_color(work, warnings)?;
@@ -292,8 +297,9 @@ fn absorption(material: &Material) -> Option<MediumDesc> {
     let volume = material.extensions.volume.as_ref().filter(|v| v.thickness_factor > 0.0)?;
     let distance = volume.attenuation_distance.filter(|&d| d > 0.0)?;
     // Black would need an infinite coefficient.
-    let sigma_a: Triple =
-        volume.attenuation_color.map(|c| (-libm::log(c.clamp(1e-6, 1.0)) / distance).min(1e12) + 0.0);
+    let sigma_a: Triple = volume
+        .attenuation_color
+        .map(|c| (-libm::log(c.clamp(1e-6, 1.0)) / distance).min(1e12) + 0.0);
     (sigma_a != [0.0; 3]).then_some(MediumDesc { sigma_a, sigma_s: [0.0; 3], g: 0.0 })
 }
 

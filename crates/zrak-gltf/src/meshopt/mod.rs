@@ -18,18 +18,21 @@ pub(crate) fn decode(desc: &MeshoptCompression, data: &[u8]) -> Result<Vec<u8>, 
             if !(4..=256).contains(&stride) || !stride.is_multiple_of(4) {
                 return Err(format!("byteStride is {stride}, not a multiple of 4 up to 256"));
             }
-            let mut bytes = attributes::decode(data, count, stride)?;
-            match (filter, stride) {
-                ("NONE", _) => {}
-                ("OCTAHEDRAL", 4) => filters::octahedral8(&mut bytes),
-                ("OCTAHEDRAL", 8) => filters::octahedral16(&mut bytes),
-                ("QUATERNION", 8) => filters::quaternion(&mut bytes),
-                ("EXPONENTIAL", _) => filters::exponential(&mut bytes),
+            let apply: fn(&mut [u8]) = match (filter, stride) {
+                ("NONE", _) => |_| {},
+                ("OCTAHEDRAL", 4) => filters::octahedral8,
+                ("OCTAHEDRAL", 8) => filters::octahedral16,
+                ("QUATERNION", 8) => filters::quaternion,
+                ("EXPONENTIAL", _) => filters::exponential,
                 ("OCTAHEDRAL" | "QUATERNION", _) => {
-                    return Err(format!("the filter {filter} cannot have a byteStride of {stride}"));
+                    return Err(format!(
+                        "the filter {filter} cannot have a byteStride of {stride}"
+                    ));
                 }
                 _ => return Err(format!("the filter {filter:?} is unknown")),
-            }
+            };
+            let mut bytes = attributes::decode(data, count, stride)?;
+            apply(&mut bytes);
             Ok(bytes)
         }
         "TRIANGLES" | "INDICES" => {
