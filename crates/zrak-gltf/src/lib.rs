@@ -18,6 +18,7 @@ mod cameras;
 mod container;
 mod deform;
 mod error;
+mod export;
 mod extensions;
 mod hierarchy;
 mod import;
@@ -34,6 +35,7 @@ mod uri;
 
 pub use buffers::Resolver;
 pub use error::{Error, ErrorKind, Warning};
+pub use export::{Assets, to_glb, write_glb};
 pub use import::{Imported, import, parse_gltf};
 pub use options::{ImportOptions, Limits};
 pub use textures::EMBEDDED;
