@@ -9,8 +9,9 @@ const validator = require('gltf-validator');
     const report = await validator.validateBytes(new Uint8Array(fs.readFileSync(file)));
     const { numErrors, numWarnings, numInfos, messages } = report.issues;
     console.log(`${path.basename(file)}: ${numErrors} errors, ${numWarnings} warnings, ${numInfos} infos`);
-    for (const { severity, code, message, pointer } of messages.slice(0, 20)) {
-      console.log(`  ${severity} ${code} ${pointer}: ${message}`);
+    for (const { severity, code, message, pointer } of messages) {
+      // 0 is an error, 1 a warning; the rest is advice.
+      if (severity < 2) console.log(`  ${severity} ${code} ${pointer}: ${message}`);
     }
     failed ||= numErrors + numWarnings > 0;
   }

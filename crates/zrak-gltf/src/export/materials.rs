@@ -73,6 +73,10 @@ impl Materials {
         } else if !self.scattering(export, &mut draft, desc) {
             return Ok(None);
         }
+        // The specification wants closed surfaces around media, which have one outside.
+        if draft.extensions.contains_key("KHR_materials_volume") {
+            draft.json["doubleSided"] = json!(false);
+        }
         for extension in draft.extensions.keys() {
             if let Some(known) = WRITTEN.iter().find(|known| *known == extension) {
                 export.file.uses(known);

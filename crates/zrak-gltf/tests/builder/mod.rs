@@ -82,7 +82,13 @@ impl Builder {
             n => &format!("VEC{n}"),
         };
         let bytes: Vec<u8> = numbers.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
-        self.accessor(kind, 5126, numbers.len(), &bytes)
+        let index = self.accessor(kind, 5126, numbers.len(), &bytes);
+        let bound = |pick: fn(f32, f32) -> f32| -> Vec<f32> {
+            (0..N).map(|i| numbers.iter().map(|v| v[i]).reduce(pick).unwrap_or(0.0)).collect()
+        };
+        self.json["accessors"][index]["min"] = json!(bound(f32::min));
+        self.json["accessors"][index]["max"] = json!(bound(f32::max));
+        index
     }
 
     pub fn indices(&mut self, indices: &[u16]) -> usize {

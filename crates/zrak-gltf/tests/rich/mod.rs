@@ -96,6 +96,18 @@ pub fn rich() -> Builder {
         {"extensions": light(1), "rotation": [-half, 0, 0, half]},
         {"extensions": light(2), "translation": [0, 7, 0], "rotation": [0, half, 0, half]}
     ]);
+    file.json["extensionsUsed"] = json!([
+        "KHR_lights_punctual",
+        "KHR_materials_clearcoat",
+        "KHR_materials_emissive_strength",
+        "KHR_materials_ior",
+        "KHR_materials_iridescence",
+        "KHR_materials_sheen",
+        "KHR_materials_specular",
+        "KHR_materials_transmission",
+        "KHR_materials_volume",
+        "KHR_texture_transform"
+    ]);
     file.json["scenes"][0] = json!({"nodes": [0, 1, 2, 3, 4, 5], "name": "rich"});
     file
 }
