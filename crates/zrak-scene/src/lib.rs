@@ -10,4 +10,4 @@ pub mod lower;
 pub mod schema;
 pub mod validate;
 
-mod suggest;
+pub mod suggest;
