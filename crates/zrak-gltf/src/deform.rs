@@ -93,7 +93,7 @@ pub(crate) fn skin(
             }
         }
     }
-    if totals.iter().any(|&total| total == 0.0) {
+    if totals.contains(&0.0) {
         warnings.note(location, "vertices without a joint stay where the mesh has them");
     }
     let mut is_mirrored = vec![false; n_vertices];

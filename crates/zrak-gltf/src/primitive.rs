@@ -196,6 +196,11 @@ pub(crate) fn read(
         return Err(Error::invalid(position_at, message));
     }
     tidy(&mut mesh);
+    mesh.drop_degenerate();
+    if mesh.triangles.is_empty() {
+        warnings.note(location, "no triangle of the primitive has an area: it is left out");
+        return Ok(None);
+    }
     Ok(Some(mesh))
 }
 

@@ -43,6 +43,8 @@ fn points_and_lines_are_left_out() {
     }
     with_mode(&SQUARE, 4).import_warned(&["whole triangles"]);
     with_mode(&SQUARE[..2], 5).import_warned(&["no triangles"]);
+    let line = [[0.0; 3], [1.0; 3], [2.0; 3]];
+    with_mode(&line, 4).import_warned(&["has an area"]);
     let mut file = Builder::triangle();
     primitive(&mut file)["attributes"] = json!({});
     file.import_warned(&["no POSITION"]);
@@ -126,7 +128,7 @@ fn bad_directions_are_mended() {
 #[test]
 fn interleaved_attributes_are_read() {
     let mut file = Builder::triangle();
-    let vertex = |x: f32| [x, x + 0.5, 0.0, 0.0, 0.0, 1.0, 9.0];
+    let vertex = |x: f32| [x, x * x, 0.0, 0.0, 0.0, 1.0, 9.0];
     let bytes: Vec<u8> =
         [0.0, 1.0, 4.0].into_iter().flat_map(vertex).flat_map(f32::to_le_bytes).collect();
     let view = file.view(&bytes);
@@ -139,7 +141,7 @@ fn interleaved_attributes_are_read() {
     let (positions, normals) = (accessor(0), accessor(12));
     primitive(&mut file)["attributes"] = json!({"POSITION": positions, "NORMAL": normals});
     let imported = file.import_clean();
-    assert_eq!(only_mesh(&imported).positions[2], [4.0, 4.5, 0.0]);
+    assert_eq!(only_mesh(&imported).positions[2], [4.0, 16.0, 0.0]);
     assert_eq!(only_mesh(&imported).normals, [[0.0, 0.0, 1.0]; 3]);
 }
 

@@ -8,6 +8,7 @@ mod geometry;
 mod lights;
 mod materials;
 mod objects;
+mod principled;
 mod shapes;
 mod textures;
 

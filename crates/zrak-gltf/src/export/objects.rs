@@ -18,6 +18,9 @@ const NODES_MAX: usize = 1 << 20;
 /// How deep groups and instances may be nested, as validation has it.
 const NESTING_MAX: usize = 128;
 
+/// Name, materials and whether it is turned inside out.
+type MeshForm<'d> = (&'d str, Vec<Option<usize>>, bool);
+
 pub(super) struct Objects<'e, 'd, 'n> {
     export: &'e mut Export<'d>,
     materials: Materials,
@@ -25,7 +28,7 @@ pub(super) struct Objects<'e, 'd, 'n> {
     /// Meshes that are read, by name.
     loaded: HashMap<&'d str, Option<Arc<TriangleMesh>>>,
     /// Meshes that are written, by name, materials and side.
-    written: HashMap<(&'d str, Vec<Option<usize>>, bool), Option<usize>>,
+    written: HashMap<MeshForm<'d>, Option<usize>>,
     /// The unit sphere, and the meshes of it by material.
     sphere: Option<Parts>,
     spheres: HashMap<usize, usize>,
@@ -263,6 +266,11 @@ impl<'e, 'd, 'n> Objects<'e, 'd, 'n> {
                 None
             }
         };
+        if let Some(mesh) = &mesh {
+            let invalid =
+                |e| Error::new(ErrorKind::Invalid, format_args!("meshes.{name}"), e, help);
+            mesh.validate().map_err(invalid)?;
+        }
         self.loaded.insert(name, mesh.clone());
         Ok(mesh)
     }

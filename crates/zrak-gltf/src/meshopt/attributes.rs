@@ -22,7 +22,7 @@ pub(super) fn decode(data: &[u8], count: usize, stride: usize) -> Result<Vec<u8>
         return Err(ends());
     }
     let mut bytes = vec![0; count * stride];
-    let block_max = (8192 / stride & !(GROUP - 1)).min(BLOCK_MAX);
+    let block_max = ((8192 / stride) & !(GROUP - 1)).min(BLOCK_MAX);
     for block in bytes.chunks_mut(block_max * stride) {
         let n = block.len() / stride;
         let mut deltas = [0; BLOCK_MAX];
