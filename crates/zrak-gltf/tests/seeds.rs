@@ -22,7 +22,8 @@ fn deformed() -> Builder {
     file.json["bufferViews"][view]["byteStride"] = json!(4);
     let indices = file.indices(&[0, 1, 2]);
     let at = file.view(&[0, 2]);
-    let values = file.view(&[0; 24]);
+    let moved = [0.0_f32, 0.0, 0.0, 0.0, 2.0, 0.0];
+    let values = file.view(&moved.map(f32::to_le_bytes).concat());
     file.json["accessors"][0]["sparse"] = json!({"count": 2,
         "indices": {"bufferView": at, "componentType": 5121}, "values": {"bufferView": values}});
     let identity = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
