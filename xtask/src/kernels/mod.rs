@@ -5,6 +5,7 @@
 //! bytes must be equal.
 
 mod header;
+mod names;
 mod sources;
 mod toolchain;
 
@@ -103,8 +104,9 @@ fn compile(root: &Path, toolchain: &Toolchain) -> anyhow::Result<String> {
         .status()
         .with_context(|| format!("cannot run {}", toolchain.cargo.display()))?;
     ensure!(status.success(), "the kernels do not compile");
-    std::fs::read_to_string(&output)
-        .with_context(|| format!("the compiler left no {}", output.display()))
+    let ptx = std::fs::read_to_string(&output)
+        .with_context(|| format!("the compiler left no {}", output.display()))?;
+    Ok(names::without_disambiguators(&ptx))
 }
 
 /// Assembles PTX and prints registers and spills.

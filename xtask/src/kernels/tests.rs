@@ -1,6 +1,7 @@
 //! The committed PTX is that of the sources.
 
 use super::header::Header;
+use super::names::without_disambiguators;
 use super::{PTX, sources};
 
 #[test]
@@ -22,4 +23,16 @@ fn header_round_trips() {
     assert!(text.ends_with("\n.version 6.3\n"));
     assert_eq!(Header::parse(&text).expect("it has a header"), header);
     assert!(Header::parse(".version 6.3\n").is_err());
+}
+
+#[test]
+fn names_do_not_tell_where_the_repository_lies() {
+    let here = ".func _RNvMs_NtNtCs6bRc8Qz7shU_9zrak_core5bxdfs7layered4eval(.param x) // Cs Cs_ Csx Csx_y";
+    let there = here.replace("6bRc8Qz7shU", "iF0Fy7VMUpU");
+    let clean = without_disambiguators(here);
+    assert_eq!(clean, without_disambiguators(&there));
+    assert_eq!(clean, here.replace("6bRc8Qz7shU", ""));
+    let committed =
+        std::fs::read_to_string(crate::repository().join(PTX)).expect("it is committed");
+    assert_eq!(without_disambiguators(&committed), committed);
 }
