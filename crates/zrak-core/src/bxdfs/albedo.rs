@@ -2,9 +2,9 @@
 //! by Trowbridge-Reitz microfacets sends anywhere. Layered models need it, to know what is left for the
 //! layers below and what several reflections among the facets would add.
 //!
-//! Both functions are polynomials fitted to the integral with Smith's height-correlated masking, from one
-//! side: the albedo is never too small by more than 1e-4, so that what is left is never too much. It is
-//! too large by 0.4% in the mean over directions and roughness.
+//! Polynomials are fitted to the integral with Smith's height-correlated masking, from one side: the
+//! albedo is not too small by more than 2.5e-3 (6e-3 at grazing angles), so that what is left is not too
+//! much. It is too large by 0.4% in the mean over directions and roughness.
 
 use crate::materials::fresnel_dielectric;
 use crate::math::{max, min};
@@ -17,7 +17,7 @@ fn bicubic(c: &[[f32; 4]; 4], t: f32, alpha: f32) -> f32 {
 }
 
 /// Albedo of facets that are perfect mirrors, for light at this cosine, 0 to 1, to a surface with the
-/// roughness `alpha`, at most 1. Never too small, at most 0.017 too large.
+/// roughness `alpha`, at most 1. At most 0.017 too large.
 #[inline(always)]
 #[must_use]
 pub fn mirror_albedo(cos: f32, alpha: f32) -> f32 {

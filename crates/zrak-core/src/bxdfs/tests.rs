@@ -1,5 +1,8 @@
 //! Each BSDF: `sample` against its density, `eval` against `sample`, energy, reciprocity.
 
+mod albedo;
+mod principled;
+
 use super::{
     BsdfSample, BsdfValue, Coat, CoatedBase, ConductorBsdf, DielectricBsdf,
     DiffuseTransmissionBsdf, LayeredBsdf, Lobes, TrowbridgeReitz, fresnel_conductor,

@@ -62,7 +62,7 @@ impl ThinFilm {
         let order = |n: f32, channel: fn(Color) -> f32| {
             let r23 = schlick_between(self.ior, n, cos_film);
             let shift = shift_21 + if n < self.ior { 0.5 } else { 0.0 };
-            let r123 = max(1e-5, min(0.9999, r12 * r23));
+            let r123 = min(0.9999, r12 * r23);
             let r = sqrt(r123);
             let rs = t121 * t121 * r23 / (1.0 - r123);
             let c1 = (rs - t121) * r;
