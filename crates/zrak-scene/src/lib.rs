@@ -2,6 +2,7 @@
 
 pub mod arena;
 pub mod builtin;
+pub mod defaults;
 pub mod desc;
 pub mod error;
 pub mod file;
