@@ -34,7 +34,7 @@ pub use fresnel::{
 pub use fuzz::Fuzz;
 pub use layered::{Coat, CoatedBase, LayeredBsdf};
 pub use oren_nayar::oren_nayar;
-pub use principled::{PrincipledBsdf, PrincipledParams};
+pub use principled::{PrincipledBsdf, PrincipledParams, evaluate_principled, sample_principled};
 pub use thin_film::ThinFilm;
 pub use trowbridge_reitz::TrowbridgeReitz;
 

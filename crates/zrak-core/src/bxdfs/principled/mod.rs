@@ -247,3 +247,27 @@ impl PrincipledBsdf {
         BsdfValue { f_cos, pdf }
     }
 }
+
+/// Draws a direction from the surface as it is seen from `wo`. A function of its own, as is the next: there
+/// is so much of it that copies of it cost a kernel more than calls.
+#[inline(never)]
+#[must_use]
+pub fn sample_principled(
+    params: &PrincipledParams,
+    wo: Vec3,
+    u_lobe: f32,
+    u: f32,
+    v: f32,
+) -> Option<BsdfSample> {
+    PrincipledBsdf::new(params, wo)?.sample(u_lobe, u, v)
+}
+
+/// Value for a pair of directions, and the density of `wi`.
+#[inline(never)]
+#[must_use]
+pub fn evaluate_principled(params: &PrincipledParams, wo: Vec3, wi: Vec3) -> BsdfValue {
+    match PrincipledBsdf::new(params, wo) {
+        Some(bsdf) => bsdf.eval(wi),
+        None => BsdfValue::ZERO,
+    }
+}

@@ -1,6 +1,6 @@
 //! The principled surface: sampling, energy, and the simpler models that it is at its corners.
 
-use super::{check, unit, views};
+use super::{Effort, check_with, unit, views};
 use crate::bxdfs::{BsdfSample, DielectricBsdf, Lobes, PrincipledBsdf, PrincipledParams};
 use crate::bxdfs::{TrowbridgeReitz, fresnel_f82, thin_dielectric};
 use crate::math::{Color, Vec3, vec3};
@@ -104,7 +104,8 @@ fn directions_have_their_density() {
     ];
     for (name, p) in cases {
         let eval = |wo: Vec3, wi: Vec3| PrincipledBsdf::new(&p, wo).unwrap().eval(wi);
-        check(name, 25, &|wo, u| sample(&p, wo, u), &eval);
+        let effort = Effort { fine: 16, n: 60_000 };
+        check_with(effort, name, 25, &|wo, u| sample(&p, wo, u), &eval);
     }
 }
 
