@@ -3,7 +3,7 @@
 use super::checker::Checker;
 use super::limits::{LENGTH_MIN, OCTAVES_MAX, TEXTURE_NESTING_MAX};
 use super::problem::KeyPath;
-use crate::desc::{ColorDesc, SceneDesc, TextureDesc, Triple};
+use crate::desc::{ColorDesc, ImageFilter, SceneDesc, TextureDesc, Triple};
 
 /// Checks every texture by itself, then how they are nested.
 pub(super) fn check(checker: &mut Checker<'_>) {
@@ -42,6 +42,14 @@ fn parameters(checker: &mut Checker<'_>, texture: &TextureDesc) {
             solid(checker, "high", *high);
         }
         TextureDesc::Image { path, .. } => {
+            // Nothing that a picture would then not show is taken without a word.
+            let plain = TextureDesc::image(path.clone(), ImageFilter::Bilinear);
+            let nearest = TextureDesc::image(path.clone(), ImageFilter::Nearest);
+            if *texture != plain && *texture != nearest {
+                let message = "of an image's fields, only `path` and `filter` (`bilinear` or \
+                               `nearest`) are rendered yet";
+                checker.note("", message, Some("leave the other fields out"));
+            }
             if path.is_empty() {
                 let help = "name a picture's file, relative to the scene file";
                 checker.note("path", "`path` is empty", Some(help));
