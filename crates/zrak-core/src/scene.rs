@@ -76,6 +76,8 @@ macro_rules! for_each_scene_array {
             diffuse_transmissions: $crate::materials::DiffuseTransmission,
             /// Coated bases.
             layereds: $crate::materials::Layered,
+            /// OpenPBR surfaces.
+            principleds: $crate::materials::Principled,
             /// Materials that are not there; the records say nothing.
             interfaces: u32,
             /// Mixed materials.
@@ -233,6 +235,7 @@ impl SceneView<'_> {
             (self.thin_dielectrics.is_empty(), MaterialKind::ThinDielectric),
             (self.diffuse_transmissions.is_empty(), MaterialKind::DiffuseTransmission),
             (self.layereds.is_empty(), MaterialKind::Layered),
+            (self.principleds.is_empty(), MaterialKind::Principled),
             (self.mixes.is_empty(), MaterialKind::Mix),
             (self.surfaces.is_empty(), MaterialKind::Surface),
             (self.interfaces.is_empty(), MaterialKind::Interface),
@@ -455,6 +458,8 @@ tagged_handle! {
         DiffuseTransmission = 9,
         /// [`crate::materials::Layered`].
         Layered = 10,
+        /// [`crate::materials::Principled`].
+        Principled = 11,
         /// [`crate::materials::Mix`].
         Mix = 12,
         /// Not there: light goes straight through.

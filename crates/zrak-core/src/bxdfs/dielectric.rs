@@ -44,7 +44,7 @@ pub struct DielectricBsdf {
 /// Direction into which `w` is refracted at the normal `n`, which may be on either side; with the index
 /// of refraction on the other side over that on the side of `w`. None where it is totally reflected.
 #[inline(always)]
-fn refract_about(w: Vec3, n: Vec3, eta: f32) -> Option<(Vec3, f32)> {
+pub(super) fn refract_about(w: Vec3, n: Vec3, eta: f32) -> Option<(Vec3, f32)> {
     let cos = dot(w, n);
     let (cos_i, n, etap) = if cos < 0.0 { (-cos, -n, 1.0 / eta) } else { (cos, n, eta) };
     let sin2_t = max(0.0, 1.0 - cos_i * cos_i) / (etap * etap);

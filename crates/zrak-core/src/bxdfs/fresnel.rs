@@ -1,4 +1,4 @@
-//! Fresnel's equations for conductors.
+//! Fresnel's equations for conductors, and approximations of them that artists have a hold on.
 
 use crate::math::{Color, max, min, sqrt};
 
@@ -39,4 +39,38 @@ pub fn reflectance_to_k(r: Color) -> Color {
         2.0 * sqrt(r / (1.0 - r))
     };
     Color::new(one(r.r), one(r.g), one(r.b))
+}
+
+/// Schlick's approximation of what is reflected at the cosine `cos`, for a share `f0` at right angles.
+#[inline(always)]
+#[must_use]
+pub fn schlick_from(f0: f32, cos: f32) -> f32 {
+    let m = max(0.0, 1.0 - cos);
+    let m2 = m * m;
+    f0 + (1.0 - f0) * (m2 * m2 * m)
+}
+
+/// The same at the surface between two dielectrics with the indices `n1` and `n2`.
+#[inline(always)]
+#[must_use]
+pub fn schlick_between(n1: f32, n2: f32, cos: f32) -> f32 {
+    let r = (n1 - n2) / (n1 + n2);
+    schlick_from(r * r, cos)
+}
+
+/// Metal of the colour `f0` at right angles, whose reflection near 82 degrees (a cosine of 1/7) is `f82`
+/// times Schlick's. Kutz, Hasan, Edmondson, *Novel aspects of the Adobe Standard Material*, 2021, as the
+/// OpenPBR specification has it.
+#[inline(always)]
+#[must_use]
+pub fn fresnel_f82(cos: f32, f0: Color, f82: Color) -> Color {
+    let one = |f0: f32, f82: f32| {
+        // cos (1 - cos)^6 at 1/7.
+        const AT_82: f32 = 46_656.0 / 823_543.0;
+        let m = max(0.0, 1.0 - cos);
+        let m2 = m * m;
+        let dip = schlick_from(f0, 1.0 / 7.0) * (1.0 - f82) / AT_82;
+        max(0.0, min(1.0, schlick_from(f0, cos) - cos * (m2 * m2 * m2) * dip))
+    };
+    Color::new(one(f0.r, f82.r), one(f0.g, f82.g), one(f0.b, f82.b))
 }

@@ -9,21 +9,33 @@
 //! Write a struct with its parameters, `sample` and `eval` in a file of its own, and test it in `tests.rs`:
 //! chi-squared of `sample` against the density, white furnace, reciprocity.
 
+mod albedo;
 mod conductor;
 mod dielectric;
 mod diffuse;
 mod fresnel;
+mod fuzz;
 mod layered;
+mod oren_nayar;
+mod principled;
+mod thin_film;
 mod trowbridge_reitz;
 
 #[cfg(test)]
 mod tests;
 
+pub use albedo::{dielectric_albedo, mean_cosine, mirror_albedo};
 pub use conductor::ConductorBsdf;
 pub use dielectric::{DielectricBsdf, Lobes, thin_dielectric};
 pub use diffuse::{DiffuseTransmissionBsdf, cosine_hemisphere};
-pub use fresnel::{fresnel_conductor, reflectance_to_k};
+pub use fresnel::{
+    fresnel_conductor, fresnel_f82, reflectance_to_k, schlick_between, schlick_from,
+};
+pub use fuzz::Fuzz;
 pub use layered::{Coat, CoatedBase, LayeredBsdf};
+pub use oren_nayar::oren_nayar;
+pub use principled::{PrincipledBsdf, PrincipledParams, evaluate_principled, sample_principled};
+pub use thin_film::ThinFilm;
 pub use trowbridge_reitz::TrowbridgeReitz;
 
 use crate::math::{Color, Vec3};

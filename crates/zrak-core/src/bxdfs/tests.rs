@@ -1,5 +1,8 @@
 //! Each BSDF: `sample` against its density, `eval` against `sample`, energy, reciprocity.
 
+mod albedo;
+mod principled;
+
 use super::{
     BsdfSample, BsdfValue, Coat, CoatedBase, ConductorBsdf, DielectricBsdf,
     DiffuseTransmissionBsdf, LayeredBsdf, Lobes, TrowbridgeReitz, fresnel_conductor,
@@ -39,11 +42,9 @@ fn views() -> [Vec3; 5] {
 }
 
 /// Integral of the density over each bin, by midpoints.
-fn expected(eval: Eval<'_>, wo: Vec3) -> (Vec<f64>, f64) {
-    // Fine enough for the narrowest lobe tested.
-    const FINE: usize = 32;
+fn expected(eval: Eval<'_>, wo: Vec3, fine: usize) -> (Vec<f64>, f64) {
     let mut bins = vec![0.0; BANDS * SECTORS];
-    let (nz, np) = (BANDS * FINE, SECTORS * FINE);
+    let (nz, np) = (BANDS * fine, SECTORS * fine);
     let cell = 2.0 / nz as f64 * std::f64::consts::TAU / np as f64;
     let mut albedo = 0.0;
     for i in 0..nz {
@@ -53,19 +54,31 @@ fn expected(eval: Eval<'_>, wo: Vec3) -> (Vec<f64>, f64) {
             let phi = ((j as f64 + 0.5) / np as f64 - 0.5) * std::f64::consts::TAU;
             let wi = vec3((r * phi.cos()) as f32, (r * phi.sin()) as f32, z as f32);
             let value = eval(wo, wi);
-            bins[i / FINE * SECTORS + j / FINE] += f64::from(value.pdf) * cell;
+            bins[i / fine * SECTORS + j / fine] += f64::from(value.pdf) * cell;
             albedo += f64::from(value.f_cos.g) * cell;
         }
     }
     (bins, albedo)
 }
 
+/// How much is done about a BSDF: how many midpoints a bin has along each side, fine enough for its
+/// narrowest lobe, and how many samples are drawn.
+#[derive(Clone, Copy)]
+struct Effort {
+    fine: usize,
+    n: u32,
+}
+
 /// Chi-squared, weights against values, and the share of light against the integral.
 fn check(name: &str, n_tests: u32, sample: Sample<'_>, eval: Eval<'_>) {
+    check_with(Effort { fine: 32, n: 200_000 }, name, n_tests, sample, eval);
+}
+
+fn check_with(effort: Effort, name: &str, n_tests: u32, sample: Sample<'_>, eval: Eval<'_>) {
+    let n = effort.n;
     let test = ChiSquared { n_tests };
     let mut rng = Rng::new(7);
     for wo in views() {
-        let n = 200_000;
         let mut counts = vec![0_u64; BANDS * SECTORS];
         let (mut sum, mut sum2, mut n_none) = (0.0, 0.0, 0_u64);
         for _ in 0..n {
@@ -90,15 +103,15 @@ fn check(name: &str, n_tests: u32, sample: Sample<'_>, eval: Eval<'_>) {
                 );
             }
         }
-        let (mut bins, albedo) = expected(eval, wo);
-        bins.iter_mut().for_each(|b| *b *= n as f64);
-        let missing = n as f64 - bins.iter().sum::<f64>();
+        let (mut bins, albedo) = expected(eval, wo, effort.fine);
+        bins.iter_mut().for_each(|b| *b *= f64::from(n));
+        let missing = f64::from(n) - bins.iter().sum::<f64>();
         // What is not scattered is a bin of its own.
         counts.push(n_none);
         bins.push(missing.max(0.0));
         test.check(&format!("{name} from {wo:?}"), &counts, &bins);
-        let mean = sum / n as f64;
-        let error = ((sum2 / n as f64 - mean * mean).max(0.0) / n as f64).sqrt();
+        let mean = sum / f64::from(n);
+        let error = ((sum2 / f64::from(n) - mean * mean).max(0.0) / f64::from(n)).sqrt();
         assert!(
             (mean - albedo).abs() < 4.0 * error + 5e-3 * albedo,
             "{name} from {wo:?}: samples {mean} +- {error}, integral {albedo}"

@@ -17,6 +17,7 @@ mod isotropic;
 mod lambertian;
 mod layered;
 mod metal;
+mod principled;
 mod rough_dielectric;
 mod roughness;
 mod surface;
@@ -34,6 +35,7 @@ pub use isotropic::Isotropic;
 pub use lambertian::Lambertian;
 pub use layered::{BASE_DIFFUSE, BASE_METAL, Layered};
 pub use metal::{Metal, reflect};
+pub use principled::{PRINCIPLED_THIN_WALLED, Principled};
 pub use rough_dielectric::{RoughDielectric, ThinDielectric};
 pub use roughness::{ROUGHNESS_ALPHA, ROUGHNESS_SQRT, ROUGHNESS_SQUARE, Roughness};
 pub use surface::{
@@ -41,7 +43,7 @@ pub use surface::{
     SURFACE_MEDIUM, SURFACE_NORMAL_MAP, SURFACE_ONE_SIDED, Surface, medium_towards, resolve,
 };
 
-use crate::bxdfs::{BsdfSample, Lobes, thin_dielectric};
+use crate::bxdfs::{BsdfSample, Lobes, evaluate_principled, sample_principled, thin_dielectric};
 use crate::interaction::SurfaceInteraction;
 use crate::math::{Color, Vec3};
 use crate::sampler::{BounceDim, Sampler};
@@ -153,6 +155,7 @@ const fn is_local(kind: MaterialKind) -> bool {
             | MaterialKind::ThinDielectric
             | MaterialKind::DiffuseTransmission
             | MaterialKind::Layered
+            | MaterialKind::Principled
     )
 }
 
@@ -188,6 +191,10 @@ fn sample_local(
             let bsdf = scene.layereds.get(i).bsdf(scene, &at);
             bsdf.sample(wo, &mut sampler.stream(STREAM_SAMPLE))
         }
+        MaterialKind::Principled if has(kind) => {
+            let params = scene.principleds.get(i).evaluate(scene, &at);
+            sample_principled(&params, wo, u_lobe, u, v)
+        }
         _ => None,
     }
 }
@@ -217,6 +224,10 @@ fn evaluate_local(
         MaterialKind::Layered if has(kind) => {
             let bsdf = scene.layereds.get(i).bsdf(scene, &at);
             bsdf.eval(wo, wi, &mut sampler.stream(STREAM_EVALUATE))
+        }
+        MaterialKind::Principled if has(kind) => {
+            let params = scene.principleds.get(i).evaluate(scene, &at);
+            evaluate_principled(&params, wo, wi).f_cos
         }
         _ => Color::BLACK,
     }

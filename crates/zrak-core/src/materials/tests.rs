@@ -3,6 +3,7 @@
 mod dielectric;
 mod diffuse;
 mod metal;
+mod principled;
 
 use super::{Response, respond};
 use crate::interaction::SurfaceInteraction;

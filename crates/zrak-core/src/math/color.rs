@@ -1,6 +1,6 @@
 //! The one type of colour: estimators use its operations, and never its channels.
 
-use core::ops::{Add, AddAssign, Mul, MulAssign};
+use core::ops::{Add, AddAssign, Mul, MulAssign, Sub};
 
 use bytemuck::{Pod, Zeroable};
 
@@ -67,6 +67,13 @@ impl Color {
         Self::new(clamp(self.r), clamp(self.g), clamp(self.b))
     }
 
+    /// Applies `f` to each channel.
+    #[inline(always)]
+    #[must_use]
+    pub fn map(self, f: impl Fn(f32) -> f32) -> Self {
+        Self::new(f(self.r), f(self.g), f(self.b))
+    }
+
     /// Largest channel.
     #[inline(always)]
     #[must_use]
@@ -80,6 +87,14 @@ impl Add for Color {
     #[inline(always)]
     fn add(self, o: Self) -> Self {
         Self::new(self.r + o.r, self.g + o.g, self.b + o.b)
+    }
+}
+
+impl Sub for Color {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        Self::new(self.r - o.r, self.g - o.g, self.b - o.b)
     }
 }
 

@@ -151,6 +151,7 @@ fn check_material(scene: &SceneView, material: MaterialRef) -> Check {
         Some(MaterialKind::ThinDielectric) => scene.thin_dielectrics.len(),
         Some(MaterialKind::DiffuseTransmission) => scene.diffuse_transmissions.len(),
         Some(MaterialKind::Layered) => scene.layereds.len(),
+        Some(MaterialKind::Principled) => scene.principleds.len(),
         Some(MaterialKind::Mix) => scene.mixes.len(),
         Some(MaterialKind::Interface) => scene.interfaces.len(),
         Some(MaterialKind::Surface) => scene.surfaces.len(),
@@ -259,6 +260,7 @@ fn check_surfaces(scene: &SceneView) -> Check {
         .chain(records(&scene.layereds).flat_map(|m| metal(m.metal)))
         .chain(records(&scene.layereds).flat_map(|m| roughness(m.roughness)))
         .chain(records(&scene.layereds).map(|m| m.color.texture))
+        .chain(records(&scene.principleds).flat_map(|m| m.textures()))
     {
         check_texture(scene, texture)?;
     }

@@ -149,6 +149,7 @@ fn good() -> SceneArrays {
     a.thin_dielectrics.push(bytemuck::Zeroable::zeroed());
     a.diffuse_transmissions.push(bytemuck::Zeroable::zeroed());
     a.layereds.push(bytemuck::Zeroable::zeroed());
+    a.principleds.push(bytemuck::Zeroable::zeroed());
     a.interfaces.push(0);
     a.homogeneous_media.push(bytemuck::Zeroable::zeroed());
     a.lights.push(bytemuck::Zeroable::zeroed());
@@ -342,6 +343,8 @@ fn surfaces_and_mixes_that_lead_astray_are_refused() {
     refused("no texture", |a| a.layereds[0].color.texture = beyond);
     refused("no texture", |a| a.layereds[0].roughness.u.texture = beyond);
     refused("no texture", |a| a.layereds[0].metal.roughness.u.texture = beyond);
+    refused("no texture", |a| a.principleds[0].fuzz_color.texture = beyond);
+    refused("no texture", |a| a.principleds[0].thin_film_thickness.texture = beyond);
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Textures and materials.
 
+mod principled;
+
 use std::collections::HashMap;
 
 use zrak_core::materials::{
@@ -412,7 +414,11 @@ impl<'a> Lowering<'a, '_> {
                 let needs_uv = self.coat(base, coat) || uv;
                 (MaterialKind::Layered, self.arrays.layereds.len(), needs_uv)
             }
-            _ => (MaterialKind::Lambertian, 1, false),
+            MaterialDesc::Principled { surface } => {
+                let (record, needs_uv) = self.principled(surface);
+                self.arrays.principleds.push(record);
+                (MaterialKind::Principled, self.arrays.principleds.len(), needs_uv)
+            }
         };
         LoweredMaterial { handle: MaterialRef::new(kind, index as u32 - 1), needs_uv }
     }

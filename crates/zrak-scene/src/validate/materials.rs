@@ -1,5 +1,7 @@
 //! Materials: their parameters, and that none reflects more light than it gets.
 
+mod principled;
+
 use std::collections::BTreeSet;
 
 use super::checker::Checker;
@@ -70,8 +72,8 @@ pub(super) fn check(checker: &mut Checker<'_>) {
                     rough(checker, "metal_roughness", metal_roughness);
                     coat_of(checker, coat);
                 }
-                MaterialDesc::Principled { .. } => {
-                    checker.note("kind", "this kind of material is not rendered yet", None);
+                MaterialDesc::Principled { surface } => {
+                    reflected.extend(principled::check(checker, surface));
                 }
             });
         }

@@ -181,6 +181,31 @@ fn materials() {
     let dielectric = |ior| MaterialDesc::Dielectric { ior, fresnel: FresnelDesc::Exact };
     check(|s| material(s, dielectric(0.0)), &[("materials.metal.ior", "more than 0")]);
     check(|s| material(s, dielectric(0.6667)), &[]);
+    let principled =
+        |surface: PrincipledDesc| MaterialDesc::Principled { surface: Box::new(surface) };
+    check(|s| material(s, principled(PrincipledDesc::default())), &[]);
+    let bad = PrincipledDesc {
+        base_color: solid([1.5, 0.0, 0.0]),
+        specular_roughness: (-0.1).into(),
+        coat_weight: 2.0.into(),
+        coat_ior: 0.9,
+        specular_ior: 0.0,
+        thin_film_thickness: f64::NAN.into(),
+        fuzz_roughness: ScalarDesc::Texture("nowhere".to_owned()),
+        ..PrincipledDesc::default()
+    };
+    check(
+        |s| material(s, principled(bad)),
+        &[
+            ("materials.metal.surface.specular_roughness", "from 0 to 1"),
+            ("materials.metal.surface.coat_weight", "from 0 to 1"),
+            ("materials.metal.surface.fuzz_roughness", "nowhere"),
+            ("materials.metal.surface.thin_film_thickness", "finite"),
+            ("materials.metal.surface.specular_ior", "at least 0.01"),
+            ("materials.metal.surface.coat_ior", "at least 1"),
+            ("materials.metal.surface.base_color[0]", "at most 1"),
+        ],
+    );
     let light = |color| MaterialDesc::DiffuseLight { color: solid(color), sides: LightSides::Both };
     check(|s| material(s, light([1e9, 5.0, 0.0])), &[]);
     check(

@@ -132,3 +132,82 @@ fn invalid_descriptions_are_not_lowered() {
     let desc = scene(vec![sphere("no such material")]);
     assert!(lower(&desc, &LowerOptions::new(".")).is_err());
 }
+
+#[test]
+fn every_parameter_of_the_principled_surface_arrives_where_it_belongs() {
+    use crate::desc::{PrincipledDesc, ScalarDesc};
+    let value = |n: u8| ScalarDesc::Value(f64::from(n) / 64.0);
+    let color = |n: u8| ColorDesc::Solid([f64::from(n) / 64.0, 0.5, 0.0]);
+    let surface = PrincipledDesc {
+        base_weight: value(1),
+        base_color: color(2),
+        base_metalness: value(3),
+        base_diffuse_roughness: value(4),
+        specular_weight: value(5),
+        specular_color: color(6),
+        specular_roughness: value(7),
+        specular_roughness_anisotropy: value(8),
+        specular_ior: 1.25,
+        transmission_weight: value(9),
+        transmission_color: color(10),
+        subsurface_weight: value(11),
+        subsurface_color: color(12),
+        coat_weight: value(13),
+        coat_color: color(14),
+        coat_roughness: value(15),
+        coat_roughness_anisotropy: value(16),
+        coat_ior: 1.375,
+        coat_darkening: value(17),
+        fuzz_weight: value(18),
+        fuzz_color: color(19),
+        fuzz_roughness: value(20),
+        thin_film_weight: value(21),
+        thin_film_thickness: ScalarDesc::Texture("t".to_owned()),
+        thin_film_ior: 1.5,
+        geometry_thin_walled: true,
+    };
+    let mut desc = scene(vec![sphere("m")]);
+    desc.textures.insert("t".to_owned(), TextureDesc::Solid { color: [22.0 / 64.0, 0.0, 0.0] });
+    let principled = |surface| MaterialDesc::Principled { surface: Box::new(surface) };
+    desc.materials.insert("m".to_owned(), principled(surface));
+    let arena = arena(&desc);
+    let view = arena.view();
+    assert_eq!(view.spheres.get(0).material.kind(), Some(MaterialKind::Principled));
+    let p = view.principleds.get(0).evaluate(&view, &TextureContext::in_space(Vec3::ZERO));
+    let shares = [
+        (p.base_weight, 1),
+        (p.base_color.r, 2),
+        (p.base_metalness, 3),
+        (p.base_diffuse_roughness, 4),
+        (p.specular_weight, 5),
+        (p.specular_color.r, 6),
+        (p.specular_roughness, 7),
+        (p.specular_roughness_anisotropy, 8),
+        (p.transmission_weight, 9),
+        (p.transmission_color.r, 10),
+        (p.subsurface_weight, 11),
+        (p.subsurface_color.r, 12),
+        (p.coat_weight, 13),
+        (p.coat_color.r, 14),
+        (p.coat_roughness, 15),
+        (p.coat_roughness_anisotropy, 16),
+        (p.coat_darkening, 17),
+        (p.fuzz_weight, 18),
+        (p.fuzz_color.r, 19),
+        (p.fuzz_roughness, 20),
+        (p.thin_film_weight, 21),
+        (p.thin_film_thickness, 22),
+    ];
+    for (share, n) in shares {
+        assert_eq!(share, f32::from(n as u8) / 64.0, "parameter {n}");
+    }
+    assert_eq!((p.specular_ior, p.coat_ior, p.thin_film_ior), (1.25, 1.375, 1.5));
+    assert!(p.geometry_thin_walled);
+    // The files' defaults are the specification's, and of a layer that is not there nothing is read.
+    desc.materials.insert("m".to_owned(), principled(PrincipledDesc::default()));
+    let arena = super::arena(&desc);
+    let view = arena.view();
+    let p = view.principleds.get(0).evaluate(&view, &TextureContext::in_space(Vec3::ZERO));
+    assert_eq!((p.base_color.g, p.specular_roughness, p.specular_ior), (0.8, 0.3, 1.5));
+    assert_eq!((p.coat_weight, p.fuzz_weight, p.transmission_weight), (0.0, 0.0, 0.0));
+}
