@@ -12,6 +12,7 @@
 //! it: unions and counts are exact, and orders are total. So the tree is the same on any number of
 //! threads.
 
+use rayon::prelude::*;
 use zrak_core::accel::{MAX_DEPTH, Node};
 
 use crate::bins::{self, PARALLEL_LIMIT, center_bounds};
@@ -38,13 +39,22 @@ pub(crate) fn fits(depth: usize, n: usize, n_left: usize) -> bool {
 /// Builds the tree over two records or more, whose root has this index, into `nodes`, one fewer than
 /// there are records.
 pub(crate) fn build(records: Vec<Record>, nodes: &mut [Node<2>], index: u32, progress: &Progress) {
-    let n = records.len();
-    let n_swept = if n <= MAX_SWEPT { MAX_SWEPT } else { SWEPT_IN_LARGE };
-    let builder = Builder { n_swept, progress };
-    let mut records = records;
+    let n_swept = if records.len() <= MAX_SWEPT { MAX_SWEPT } else { SWEPT_IN_LARGE };
+    build_swept(records, nodes, index, n_swept, progress);
+}
+
+/// [`build`], with sets of up to `n_swept` primitives swept exactly.
+pub(crate) fn build_swept(
+    mut records: Vec<Record>,
+    nodes: &mut [Node<2>],
+    index: u32,
+    n_swept: usize,
+    progress: &Progress,
+) {
+    let is_large = records.len() > PARALLEL_LIMIT;
+    let mut copy = if is_large { records.par_iter().copied().collect() } else { Vec::new() };
     let place = Place { nodes, index, depth: 1 };
-    let mut copy = if n > PARALLEL_LIMIT { records.clone() } else { Vec::new() };
-    builder.in_tasks(&mut records, &mut copy, place);
+    Builder { n_swept, progress }.in_tasks(&mut records, &mut copy, place);
 }
 
 struct Builder<'a> {
@@ -91,6 +101,7 @@ impl Builder<'_> {
 
     fn child<'r>(&self, records: &'r mut [Record], copy: &mut [Record], place: Place) -> Child<'r> {
         if records.len() == 1 {
+            self.progress.add(1);
             return Child::Leaf(&records[0]);
         }
         Child::Inner(place.index, self.in_tasks(records, copy, place))

@@ -109,6 +109,7 @@ impl Sweeper {
         let n = last - first;
         let mut best = None;
         let mut best_cost = f32::INFINITY;
+        let mut whole_cost = f32::INFINITY;
         for axis in 0..3 {
             let order = &self.orders[axis][first..last];
             let right_area = &mut self.right_area[..n];
@@ -117,6 +118,7 @@ impl Sweeper {
                 all.union(&records[usize::from(i)].planes());
                 *area = all.half_area();
             }
+            whole_cost = right_area[0] * n as f32;
             let mut all = Planes::EMPTY;
             for i in 1..n {
                 all.union(&records[usize::from(order[i - 1])].planes());
@@ -127,7 +129,9 @@ impl Sweeper {
                 }
             }
         }
-        best.filter(|&(_, n_left)| fits(depth, n, n_left)).unwrap_or_else(|| {
+        // Where boxes all but coincide, no split gains anything, and halving makes the tree flat.
+        let gains = best_cost < whole_cost * (1.0 - 1.0 / 65536.0);
+        best.filter(|&(_, n_left)| gains && fits(depth, n, n_left)).unwrap_or_else(|| {
             let mut centers = Planes::EMPTY;
             for &i in &self.orders[0][first..last] {
                 centers.union(&records[usize::from(i)].center_planes());

@@ -124,7 +124,7 @@ impl Trees {
         let n = records.len();
         let first = root2 as usize;
         self.nodes2.truncate(first);
-        self.nodes2.resize(first + n.saturating_sub(1).max(1), Node::EMPTY);
+        self.nodes2.par_extend(rayon::iter::repeat_n(Node::EMPTY, n.saturating_sub(1).max(1)));
         if let [] | [_] = records[..] {
             self.nodes2[first] = records.first().map_or(Node::EMPTY, Record::alone);
             self.nodes8.truncate(root8 as usize);

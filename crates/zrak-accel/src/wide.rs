@@ -266,7 +266,7 @@ pub(crate) fn widen(
     let counts: Vec<usize> = tasks.par_iter().map(|&subtree| tree.count(subtree)).collect();
     let n_nodes = top.len() + counts.iter().sum::<usize>();
     out.truncate(index as usize);
-    out.resize(index as usize + n_nodes, Node::EMPTY);
+    out.par_extend(rayon::iter::repeat_n(Node::EMPTY, n_nodes));
     let (out_top, mut rest) = out[index as usize..].split_at_mut(top.len());
     let mut parts = Vec::with_capacity(tasks.len());
     let mut next = index + top.len() as u32;
@@ -289,6 +289,7 @@ pub(crate) fn widen(
             }
         });
     }
+    progress.add(n - tasks.iter().map(|subtree| subtree.n).sum::<usize>());
     parts.into_par_iter().for_each(|(subtree, part, first)| {
         tree.write_all(subtree, part, first);
         progress.add(subtree.n);

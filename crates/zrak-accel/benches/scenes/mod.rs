@@ -4,7 +4,7 @@ use zrak_core::math::{Bounds, Vec3, pcg3d, unit_f32, vec3};
 use zrak_core::scene::{PrimKind, PrimRef};
 
 /// Bounds of about `n` triangles of the scene of this name, if there is one.
-pub fn by_name(name: &str, n: u32) -> Option<Vec<(PrimRef, Bounds)>> {
+pub(crate) fn by_name(name: &str, n: u32) -> Option<Vec<(PrimRef, Bounds)>> {
     match name {
         "terrain" => Some(terrain(n)),
         "soup" => Some(soup(n)),
@@ -13,7 +13,7 @@ pub fn by_name(name: &str, n: u32) -> Option<Vec<(PrimRef, Bounds)>> {
 }
 
 /// A height field: two triangles to a cell of a square grid.
-pub fn terrain(n: u32) -> Vec<(PrimRef, Bounds)> {
+fn terrain(n: u32) -> Vec<(PrimRef, Bounds)> {
     let side = (f64::from(n) / 2.0).sqrt() as u32;
     let cell = 1.0 / side as f32;
     let corner = |i: u32, k: u32| {
@@ -31,7 +31,7 @@ pub fn terrain(n: u32) -> Vec<(PrimRef, Bounds)> {
 }
 
 /// Small triangles of any direction, uniform in the unit cube, with a few large ones.
-pub fn soup(n: u32) -> Vec<(PrimRef, Bounds)> {
+fn soup(n: u32) -> Vec<(PrimRef, Bounds)> {
     let in_cube = |i, k| Vec3::from_array(pcg3d([i, k, 5]).map(unit_f32));
     let triangle = |i: u32| {
         let size = if i % 1000 == 0 { 0.1 } else { 0.005 };
