@@ -24,7 +24,7 @@ fn terrain(n: u32) -> Vec<(PrimRef, Bounds)> {
     };
     let triangle = |i: u32| {
         let (x, z) = (i / 2 % side, i / 2 / side);
-        let tip = if i % 2 == 0 { corner(x, z) } else { corner(x + 1, z + 1) };
+        let tip = if i.is_multiple_of(2) { corner(x, z) } else { corner(x + 1, z + 1) };
         around([corner(x + 1, z), corner(x, z + 1), tip])
     };
     numbered((0..2 * side * side).map(triangle))
@@ -34,7 +34,7 @@ fn terrain(n: u32) -> Vec<(PrimRef, Bounds)> {
 fn soup(n: u32) -> Vec<(PrimRef, Bounds)> {
     let in_cube = |i, k| Vec3::from_array(pcg3d([i, k, 5]).map(unit_f32));
     let triangle = |i: u32| {
-        let size = if i % 1000 == 0 { 0.1 } else { 0.005 };
+        let size = if i.is_multiple_of(1000) { 0.1 } else { 0.005 };
         let p = in_cube(i, 0);
         around([p, p + in_cube(i, 1) * size, p + in_cube(i, 2) * size])
     };
