@@ -64,6 +64,43 @@ pub(crate) enum Command {
     Man(man::ManArgs),
 }
 
+/// What of a scene may be read.
+#[derive(Args, Clone, Copy, Debug)]
+#[command(next_help_heading = "Scene")]
+pub(crate) struct LoadArgs {
+    /// Read files outside of the scene's folder, too (pbrt files)
+    #[arg(long)]
+    pub(crate) allow_external: bool,
+    /// Most bytes of a scene's files together, unpacked (pbrt files)
+    #[arg(long, value_name = "N", default_value_t = zrak::LoadOptions::default().max_bytes)]
+    pub(crate) max_bytes: u64,
+}
+
+impl LoadArgs {
+    /// Loads a scene; says what was not read as it stands, unless nobody wants to know.
+    pub(crate) fn load(
+        &self,
+        scene: &std::path::Path,
+        quiet: bool,
+    ) -> Result<zrak::Scene, zrak::Error> {
+        let Self { allow_external, max_bytes } = *self;
+        let scene = zrak::load_scene_with(scene, &zrak::LoadOptions { allow_external, max_bytes })?;
+        if !quiet {
+            for warning in scene.warnings.iter().take(WARNINGS_MAX) {
+                crate::terminal::note(&format!("warning: {warning}"));
+            }
+            if scene.warnings.len() > WARNINGS_MAX {
+                let n_more = scene.warnings.len() - WARNINGS_MAX;
+                crate::terminal::note(&format!("warning: and {n_more} more of the kind"));
+            }
+        }
+        Ok(scene)
+    }
+}
+
+/// More warnings than this are counted, not shown.
+const WARNINGS_MAX: usize = 20;
+
 /// What to render on.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Backend (never changes the picture)")]

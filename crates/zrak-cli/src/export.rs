@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use zrak::Scene;
-use zrak::scene::desc::TextureDesc;
+use zrak::scene::desc::{BackgroundDesc, MeshDesc, TextureDesc};
 use zrak::scene::lower::Assets;
 
 use crate::exit_codes::Exit;
@@ -15,23 +15,26 @@ use crate::terminal;
 pub(crate) const EXAMPLES: &str = "\
 Examples:
   zrak export cover -o cover.toml           a built-in scene, to be changed
+  zrak export box.pbrt -o box.toml          a scene for pbrt-v4 as one for zrak
   zrak export final --spp 1000 | less       as it would be rendered, to the standard output";
 
 /// Options of `zrak export`.
 #[derive(Args, Debug)]
 pub(crate) struct ExportArgs {
-    /// Built-in scene (see `zrak scenes`) or path of a .toml file
+    /// Built-in scene (see `zrak scenes`) or path of a .toml or .pbrt file
     scene: PathBuf,
     /// File to write; `-` is the standard output
     #[arg(long, short, value_name = "FILE", default_value = "-")]
     output: PathBuf,
+    #[command(flatten)]
+    load: crate::args::LoadArgs,
     #[command(flatten)]
     overrides: Overrides,
 }
 
 /// Writes the scene.
 pub(crate) fn run(args: &ExportArgs) -> Result<Exit, Failure> {
-    let mut scene = zrak::load_scene(&args.scene)?;
+    let mut scene = args.load.load(&args.scene, false)?;
     args.overrides.apply(&mut scene.desc)?;
     let is_stdout = args.output.as_os_str() == "-";
     keep_images(&mut scene, (!is_stdout).then_some(&args.output));
@@ -45,9 +48,9 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Exit, Failure> {
     Ok(Exit::Success)
 }
 
-/// Makes relative paths of images absolute, unless the new file lies where the old one did.
+/// Makes relative paths of images and meshes absolute, unless the new file lies where the old one did.
 fn keep_images(scene: &mut Scene, output: Option<&PathBuf>) {
-    if scene.source.is_none() {
+    if scene.source.is_none() && scene.base_dir.as_os_str().is_empty() {
         return;
     }
     let Ok(base_dir) = folder(&scene.base_dir).canonicalize() else { return };
@@ -63,6 +66,18 @@ fn keep_images(scene: &mut Scene, output: Option<&PathBuf>) {
         {
             *path = absolute.to_owned();
         }
+    }
+    for mesh in scene.desc.meshes.values_mut() {
+        if let MeshDesc::File { path } = mesh
+            && let Some(absolute) = base_dir.join(&*path).to_str()
+        {
+            *path = absolute.to_owned();
+        }
+    }
+    if let BackgroundDesc::Image { path, .. } = &mut scene.desc.background
+        && let Some(absolute) = base_dir.join(&*path).to_str()
+    {
+        *path = absolute.to_owned();
     }
 }
 

@@ -10,13 +10,14 @@
 //! - `unsafe` lives in [`accessor`] alone.
 //!
 //! Reading order: [`scene`] (the data), [`ray`] and [`interaction`], [`shapes`], [`accel`],
-//! [`textures`], [`materials`], [`media`], [`lights`], [`sampler`], [`camera`], [`film`], and
+//! [`textures`], [`bxdfs`], [`materials`], [`media`], [`lights`], [`sampler`], [`camera`], [`film`], and
 //! [`integrators`], which puts them together.
 
 #![cfg_attr(target_arch = "nvptx64", no_std, feature(core_intrinsics), allow(internal_features))]
 
 pub mod accel;
 pub mod accessor;
+pub mod bxdfs;
 pub mod camera;
 pub mod film;
 pub mod integrators;

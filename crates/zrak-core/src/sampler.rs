@@ -101,11 +101,38 @@ impl Sampler {
         Self { key: [self.key[0] ^ 0x68bc_21eb, self.key[1]], bounce: self.bounce }
     }
 
+    /// Numbers for a decision that needs many, at the current bounce; `purpose` tells such decisions
+    /// apart.
+    #[inline(always)]
+    #[must_use]
+    pub fn stream(&self, purpose: u32) -> Stream {
+        let key = lowbias32(self.bounce ^ lowbias32(purpose ^ 0x51ed_270b));
+        Stream { key: [self.key[0] ^ key, self.key[1]], i: 0 }
+    }
+
     /// Number in [0, 1) for the free flight in the medium with this index, after the current bounce.
     #[inline(always)]
     #[must_use]
     pub fn free_flight(&self, medium: u32) -> f32 {
         self.draw(FREE_FLIGHT_DIMS | lowbias32(self.bounce ^ lowbias32(medium)))
+    }
+}
+
+/// Random numbers, one after the other, for what happens at one place of a path.
+#[derive(Clone, Copy, Debug)]
+pub struct Stream {
+    key: [u32; 2],
+    i: u32,
+}
+
+impl Stream {
+    /// The next number in [0, 1).
+    #[inline(always)]
+    #[allow(clippy::should_implement_trait)]
+    pub fn next(&mut self) -> f32 {
+        self.i += 1;
+        let mixed = lowbias32(self.i.wrapping_mul(0x9e37_79b9) ^ self.key[0]);
+        unit_f32(lowbias32(mixed.wrapping_add(self.key[1])))
     }
 }
 

@@ -66,6 +66,18 @@ macro_rules! for_each_scene_array {
             isotropics: $crate::materials::Isotropic,
             /// Emitters.
             diffuse_lights: $crate::materials::DiffuseLight,
+            /// Metals by Fresnel's equations.
+            conductors: $crate::materials::Conductor,
+            /// Rough clear dielectrics.
+            rough_dielectrics: $crate::materials::RoughDielectric,
+            /// Thin panes.
+            thin_dielectrics: $crate::materials::ThinDielectric,
+            /// Diffuse reflectors that light goes through.
+            diffuse_transmissions: $crate::materials::DiffuseTransmission,
+            /// Coated bases.
+            layereds: $crate::materials::Layered,
+            /// Materials that are not there; the records say nothing.
+            interfaces: u32,
             /// Mixed materials.
             mixes: $crate::materials::Mix,
             /// Materials with more about their surface.
@@ -111,6 +123,9 @@ pub enum Feature {
     Lights = 0,
     /// Media that surfaces bound.
     Media = 1,
+    /// Not something that a scene has, but a kernel: so much code that looking up a texture is a call.
+    /// A call costs registers; a copy of its code at each of many places costs more.
+    TextureCalls = 31,
 }
 
 impl Kinds {
@@ -125,6 +140,30 @@ impl Kinds {
             | 1 << MaterialKind::Metal as u32
             | 1 << MaterialKind::Dielectric as u32,
         textures: 1 << TextureKind::Solid as u32,
+        features: 0,
+    };
+
+    /// Those of the books' scenes that need no instance: nothing turned or stretched that cannot be
+    /// turned or stretched in world space.
+    pub const BOOKS_IN_WORLD_SPACE: Self =
+        Self { prims: Self::BOOKS.prims & !(1 << PrimKind::Instance as u32), ..Self::BOOKS };
+
+    /// What the scenes of *Ray Tracing in One Weekend* and *The Next Week* are made of.
+    pub const BOOKS: Self = Self {
+        prims: 1 << PrimKind::Sphere as u32
+            | 1 << PrimKind::MovingSphere as u32
+            | 1 << PrimKind::Quad as u32
+            | 1 << PrimKind::Box as u32
+            | 1 << PrimKind::Triangle as u32
+            | 1 << PrimKind::Instance as u32
+            | 1 << PrimKind::Medium as u32,
+        materials: Self::PLAIN_SPHERES.materials
+            | 1 << MaterialKind::Isotropic as u32
+            | 1 << MaterialKind::DiffuseLight as u32,
+        textures: 1 << TextureKind::Solid as u32
+            | 1 << TextureKind::Checker as u32
+            | 1 << TextureKind::Noise as u32
+            | 1 << TextureKind::Image as u32,
         features: 0,
     };
 
@@ -189,9 +228,14 @@ impl SceneView<'_> {
             (self.dielectrics.is_empty(), MaterialKind::Dielectric),
             (self.isotropics.is_empty(), MaterialKind::Isotropic),
             (self.diffuse_lights.is_empty(), MaterialKind::DiffuseLight),
+            (self.conductors.is_empty(), MaterialKind::Conductor),
+            (self.rough_dielectrics.is_empty(), MaterialKind::RoughDielectric),
+            (self.thin_dielectrics.is_empty(), MaterialKind::ThinDielectric),
+            (self.diffuse_transmissions.is_empty(), MaterialKind::DiffuseTransmission),
+            (self.layereds.is_empty(), MaterialKind::Layered),
             (self.mixes.is_empty(), MaterialKind::Mix),
             (self.surfaces.is_empty(), MaterialKind::Surface),
-            (false, MaterialKind::Interface),
+            (self.interfaces.is_empty(), MaterialKind::Interface),
         ];
         let textures = [
             (false, TextureKind::Solid),
@@ -401,6 +445,16 @@ tagged_handle! {
         Isotropic = 4,
         /// [`crate::materials::DiffuseLight`].
         DiffuseLight = 5,
+        /// [`crate::materials::Conductor`].
+        Conductor = 6,
+        /// [`crate::materials::RoughDielectric`].
+        RoughDielectric = 7,
+        /// [`crate::materials::ThinDielectric`].
+        ThinDielectric = 8,
+        /// [`crate::materials::DiffuseTransmission`].
+        DiffuseTransmission = 9,
+        /// [`crate::materials::Layered`].
+        Layered = 10,
         /// [`crate::materials::Mix`].
         Mix = 12,
         /// Not there: light goes straight through.

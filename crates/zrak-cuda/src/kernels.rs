@@ -23,13 +23,19 @@ pub(crate) struct RenderKernel {
 }
 
 /// From the most special to the one that renders everything.
-const RENDER_KERNELS: [RenderKernel; 2] = [
+const RENDER_KERNELS: [RenderKernel; 4] = [
     RenderKernel {
         name: "render_naive_plain_spheres",
         kinds: Kinds::PLAIN_SPHERES,
         max_registers: 80,
     },
-    RenderKernel { name: "render_naive", kinds: Kinds::ALL, max_registers: 80 },
+    RenderKernel {
+        name: "render_naive_books_in_world_space",
+        kinds: Kinds::BOOKS_IN_WORLD_SPACE,
+        max_registers: 80,
+    },
+    RenderKernel { name: "render_naive_books", kinds: Kinds::BOOKS, max_registers: 80 },
+    RenderKernel { name: "render_naive", kinds: Kinds::ALL, max_registers: 128 },
 ];
 
 /// The most special kernel that has the code of all these kinds.
@@ -56,6 +62,7 @@ mod tests {
         assert_eq!(render_kernel(&Kinds::default()), spheres);
         assert_eq!(render_kernel(&Kinds::ALL).name, "render_naive");
         let with_images = Kinds { textures: 1 << 3 | 1, ..Kinds::PLAIN_SPHERES };
-        assert_eq!(render_kernel(&with_images).name, "render_naive");
+        assert_eq!(render_kernel(&with_images).name, "render_naive_books_in_world_space");
+        assert_eq!(render_kernel(&Kinds::BOOKS).name, "render_naive_books");
     }
 }

@@ -43,6 +43,16 @@ render_kernel! {
 }
 
 render_kernel! {
+    /// Scenes such as the books'.
+    render_naive_books, Kinds::BOOKS
+}
+
+render_kernel! {
+    /// The same without instances.
+    render_naive_books_in_world_space, Kinds::BOOKS_IN_WORLD_SPACE
+}
+
+render_kernel! {
     /// Scenes of plain spheres.
     render_naive_plain_spheres, Kinds::PLAIN_SPHERES
 }

@@ -68,12 +68,8 @@ const LINE_MAX: usize = 4096;
 
 impl SceneError {
     /// A problem with the file `origin` as a whole.
-    pub(crate) fn file(
-        kind: SceneErrorKind,
-        origin: &str,
-        message: String,
-        help: Option<&str>,
-    ) -> Self {
+    #[must_use]
+    pub fn file(kind: SceneErrorKind, origin: &str, message: String, help: Option<&str>) -> Self {
         let problem = Problem { path: KeyPath::default(), message, help: help.map(str::to_owned) };
         let diagnostics = vec![Diagnostic { problem, place: None }];
         Self(Box::new(Inner { kind, diagnostics, n_problems: 1, origin: origin.to_owned() }))
@@ -81,7 +77,8 @@ impl SceneError {
 
     /// Problems, at least one, of the text of the file `origin`, each with its span in bytes. They
     /// are put in the order of the text.
-    pub(crate) fn text(
+    #[must_use]
+    pub fn text(
         kind: SceneErrorKind,
         origin: &str,
         text: &str,

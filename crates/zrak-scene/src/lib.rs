@@ -2,6 +2,7 @@
 
 pub mod arena;
 pub mod builtin;
+pub mod defaults;
 pub mod desc;
 pub mod error;
 pub mod file;
@@ -9,4 +10,4 @@ pub mod lower;
 pub mod schema;
 pub mod validate;
 
-mod suggest;
+pub mod suggest;

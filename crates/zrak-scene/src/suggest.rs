@@ -1,10 +1,7 @@
 //! "Did you mean ...?": the nearest of some names to a misspelt one.
 
 /// The candidate nearest to `name`, if one is near enough to be what was meant.
-pub(crate) fn closest<'a>(
-    name: &str,
-    candidates: impl IntoIterator<Item = &'a str>,
-) -> Option<&'a str> {
+pub fn closest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let wanted: Vec<char> = name.to_lowercase().chars().take(MAX_CHARS).collect();
     candidates
         .into_iter()

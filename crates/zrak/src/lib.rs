@@ -51,7 +51,7 @@ pub use zrak_scene::desc::SceneDesc;
 
 pub use backends::{BackendChoice, RenderOptions, UnknownBackend, cpu_instruction_set, n_threads};
 pub use error::{Error, ErrorKind};
-pub use load::{Scene, load_scene};
+pub use load::{LoadOptions, Scene, load_scene, load_scene_with};
 pub use render::{RenderOutput, render};
 
 /// The version of zrak.

@@ -19,8 +19,25 @@ pub struct Scene {
     pub desc: SceneDesc,
     /// Folder that the paths of its images start from.
     pub base_dir: PathBuf,
-    /// The file it came from; `None` for a built-in scene.
+    /// The scene file it came from; `None` for a built-in scene and for other formats.
     pub source: Option<Source>,
+    /// What was not read as it stands in a file of another format.
+    pub warnings: Vec<String>,
+}
+
+/// What may be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LoadOptions {
+    /// Whether files outside of the scene's folder may be read.
+    pub allow_external: bool,
+    /// Most bytes of all files of a scene together, once they are unpacked.
+    pub max_bytes: u64,
+}
+
+impl Default for LoadOptions {
+    fn default() -> Self {
+        Self { allow_external: false, max_bytes: 16 << 30 }
+    }
 }
 
 impl Scene {
@@ -41,21 +58,44 @@ impl Scene {
     }
 }
 
-/// Loads a scene: from a file, if the argument ends in `.toml`, has a path separator in it or is
-/// the name of a file; otherwise the built-in scene of this name, which goes before a file of
+/// Loads a scene: from a file, if the argument ends in `.toml` or `.pbrt`, has a path separator in it or
+/// is the name of a file; otherwise the built-in scene of this name, which goes before a file of
 /// the same name.
 ///
 /// # Errors
 /// If the file is not a scene that can be rendered, or there is no built-in scene of this name.
 pub fn load_scene(name_or_path: impl AsRef<OsStr>) -> Result<Scene, Error> {
+    load_scene_with(name_or_path, &LoadOptions::default())
+}
+
+/// [`load_scene`] with other limits.
+///
+/// # Errors
+/// As for [`load_scene`].
+pub fn load_scene_with(
+    name_or_path: impl AsRef<OsStr>,
+    options: &LoadOptions,
+) -> Result<Scene, Error> {
     let path = Path::new(name_or_path.as_ref());
     if let Some(builtin) = path.to_str().and_then(builtin::find) {
         let desc = (builtin.build)();
-        return Ok(Scene { desc, base_dir: PathBuf::new(), source: None });
+        let (base_dir, warnings) = (PathBuf::new(), Vec::new());
+        return Ok(Scene { desc, base_dir, source: None, warnings });
+    }
+    if has_extension(path, "pbrt") {
+        let LoadOptions { allow_external, max_bytes } = *options;
+        let options = zrak_pbrt::ImportOptions { allow_external, max_bytes };
+        let imported = zrak_pbrt::import(path, &options)?;
+        return Ok(Scene {
+            desc: imported.desc,
+            base_dir: imported.base_dir,
+            source: None,
+            warnings: imported.warnings.iter().map(ToString::to_string).collect(),
+        });
     }
     if is_path(path) {
         let file::LoadedScene { desc, base_dir, source } = file::read(path)?;
-        return Ok(Scene { desc, base_dir, source: Some(source) });
+        return Ok(Scene { desc, base_dir, source: Some(source), warnings: Vec::new() });
     }
     let name = path.to_string_lossy();
     let guess = match builtin::suggest(&name) {
@@ -64,7 +104,7 @@ pub fn load_scene(name_or_path: impl AsRef<OsStr>) -> Result<Scene, Error> {
     };
     let message = format!(
         "there is no built-in scene '{name}'{guess} run `zrak scenes` for a list, or give the path \
-         of a .toml file"
+         of a .toml or .pbrt file"
     );
     Err(Error::new(ErrorKind::UnknownScene, message))
 }
@@ -72,9 +112,16 @@ pub fn load_scene(name_or_path: impl AsRef<OsStr>) -> Result<Scene, Error> {
 /// Whether it can only mean a file.
 fn is_path(path: &Path) -> bool {
     let text = path.as_os_str().to_string_lossy();
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
-        || text.contains(std::path::is_separator)
-        || path.is_file()
+    has_extension(path, "toml") || text.contains(std::path::is_separator) || path.is_file()
+}
+
+/// Whether a file's name ends so, or so and in `.gz`.
+fn has_extension(path: &Path, wanted: &str) -> bool {
+    let is = |path: &Path, wanted: &str| {
+        path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
+    };
+    is(path, wanted)
+        || (is(path, "gz") && path.file_stem().is_some_and(|s| is(Path::new(s), wanted)))
 }
 
 #[cfg(test)]

@@ -20,6 +20,7 @@ pub(crate) const EXAMPLES: &str = "\
 Examples:
   zrak render final                               to final.png, on the GPU if there is one
   zrak render final --width 1600 --spp 1000       larger (the aspect ratio stays) and cleaner
+  zrak render killeroo.pbrt -o killeroo.exr       a scene for pbrt-v4
   zrak render my.toml -o my.png -o my.exr         one for the screen, one for further work
   zrak render cover --backend cpu --threads 1     on one thread: the same picture
   zrak render cover --json --quiet | jq .times    what it took, for a script
@@ -29,7 +30,7 @@ Ctrl-C stops at once and writes the samples per pixel that are finished; a secon
 /// Options of `zrak render`.
 #[derive(Args, Debug)]
 pub(crate) struct RenderArgs {
-    /// Built-in scene (see `zrak scenes`) or path of a .toml file
+    /// Built-in scene (see `zrak scenes`) or path of a .toml or .pbrt file
     scene: PathBuf,
     /// Picture to write, as .png, .jpg, .hdr, .exr or .pfm; may be repeated [default: the scene's name, as .png]
     #[arg(long, short, value_name = "FILE")]
@@ -43,6 +44,8 @@ pub(crate) struct RenderArgs {
     /// Say nothing but errors
     #[arg(long, short)]
     quiet: bool,
+    #[command(flatten)]
+    load: crate::args::LoadArgs,
     #[command(flatten)]
     overrides: Overrides,
     #[command(flatten)]
@@ -61,7 +64,7 @@ enum TransferName {
 /// Renders, and ends with the exit code of what happened.
 pub(crate) fn run(args: &RenderArgs, start: Instant) -> Result<Exit, Failure> {
     let control = interrupt::install();
-    let mut scene = zrak::load_scene(&args.scene)?;
+    let mut scene = args.load.load(&args.scene, args.quiet)?;
     args.overrides.apply(&mut scene.desc)?;
     let outputs = outputs(args, &scene)?;
     let arena = scene.lower()?;

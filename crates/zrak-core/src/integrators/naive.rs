@@ -246,7 +246,7 @@ impl Path {
             };
             if let Some((light, share)) = choose_light(scene, from, &sampler) {
                 let f = match vertex {
-                    Vertex::Surface(surface) => evaluate(scene, surface, d, light.wi),
+                    Vertex::Surface(surface) => evaluate(scene, surface, d, light.wi, &sampler),
                     Vertex::Bounded(medium) => Color::grey(medium.phase(dot(d, light.wi))),
                     Vertex::Constant => Color::grey(0.25 * core::f32::consts::FRAC_1_PI),
                 };

@@ -9,31 +9,42 @@
 //!
 //! Directions are unit vectors in world space; `d` is the ray's own direction, towards the surface.
 
+mod conductor;
 mod dielectric;
 mod diffuse_light;
+mod diffuse_transmission;
 mod isotropic;
 mod lambertian;
+mod layered;
 mod metal;
+mod rough_dielectric;
+mod roughness;
 mod surface;
 
 #[cfg(test)]
 mod tests;
 
+pub use conductor::{Conductor, METAL_INDEX, METAL_REFLECTANCE};
 pub use dielectric::{
     Dielectric, FRESNEL_EXACT, FRESNEL_SCHLICK, fresnel_dielectric, refract, schlick,
 };
 pub use diffuse_light::{DiffuseLight, SIDES_BOTH, SIDES_FRONT};
+pub use diffuse_transmission::DiffuseTransmission;
 pub use isotropic::Isotropic;
 pub use lambertian::Lambertian;
+pub use layered::{BASE_DIFFUSE, BASE_METAL, Layered};
 pub use metal::{Metal, reflect};
+pub use rough_dielectric::{RoughDielectric, ThinDielectric};
+pub use roughness::{ROUGHNESS_ALPHA, ROUGHNESS_SQRT, ROUGHNESS_SQUARE, Roughness};
 pub use surface::{
     Frame, Mix, Resolved, SURFACE_ALPHA, SURFACE_BUMP, SURFACE_CUTOFF, SURFACE_EMISSION,
     SURFACE_MEDIUM, SURFACE_NORMAL_MAP, SURFACE_ONE_SIDED, Surface, medium_towards, resolve,
 };
 
+use crate::bxdfs::{BsdfSample, Lobes, thin_dielectric};
 use crate::interaction::SurfaceInteraction;
 use crate::math::{Color, Vec3};
-use crate::sampler::Sampler;
+use crate::sampler::{BounceDim, Sampler};
 use crate::scene::{MaterialKind, SceneView};
 
 /// A direction drawn from a material.
@@ -67,7 +78,13 @@ impl Response {
 /// `d`; black for deltas. Both directions are unit vectors in world space.
 #[inline(always)]
 #[must_use]
-pub fn evaluate(scene: &SceneView, surface: &SurfaceInteraction, d: Vec3, wi: Vec3) -> Color {
+pub fn evaluate(
+    scene: &SceneView,
+    surface: &SurfaceInteraction,
+    d: Vec3,
+    wi: Vec3,
+    sampler: &Sampler,
+) -> Color {
     let i = surface.material.index();
     let has = |kind| scene.kinds.has_material(kind);
     match surface.material.kind() {
@@ -76,6 +93,10 @@ pub fn evaluate(scene: &SceneView, surface: &SurfaceInteraction, d: Vec3, wi: Ve
         }
         Some(kind @ MaterialKind::Metal) if has(kind) => {
             scene.metals.get(i).evaluate(scene, surface, d, wi)
+        }
+        Some(kind) if has(kind) && is_local(kind) => {
+            let frame = Frame::of(surface);
+            evaluate_local(scene, surface, kind, frame.to_local(-d), frame.to_local(wi), sampler)
         }
         _ => Color::BLACK,
     }
@@ -105,7 +126,98 @@ pub fn respond(
         Some(kind @ MaterialKind::DiffuseLight) if has(kind) => {
             scene.diffuse_lights.get(i).respond(scene, surface, d)
         }
+        Some(kind) if has(kind) && is_local(kind) => {
+            let frame = Frame::of(surface);
+            match sample_local(scene, surface, kind, frame.to_local(-d), sampler) {
+                Some(sample) => Response::scattered(frame.to_world(sample.wi), sample.weight),
+                None => Response::ABSORBED,
+            }
+        }
         // A phase function on a surface: the host refuses it.
         _ => Response::ABSORBED,
+    }
+}
+
+/// What the random numbers of a BSDF that needs many are for.
+const STREAM_SAMPLE: u32 = 1;
+/// The same for evaluating it.
+const STREAM_EVALUATE: u32 = 2;
+
+/// Whether a material is a BSDF in the local frame.
+#[inline(always)]
+const fn is_local(kind: MaterialKind) -> bool {
+    matches!(
+        kind,
+        MaterialKind::Conductor
+            | MaterialKind::RoughDielectric
+            | MaterialKind::ThinDielectric
+            | MaterialKind::DiffuseTransmission
+            | MaterialKind::Layered
+    )
+}
+
+/// Draws a direction from such a material.
+#[inline(always)]
+fn sample_local(
+    scene: &SceneView,
+    surface: &SurfaceInteraction,
+    kind: MaterialKind,
+    wo: Vec3,
+    sampler: &Sampler,
+) -> Option<BsdfSample> {
+    let (i, at) = (surface.material.index(), surface.texture_context());
+    let has = |kind| scene.kinds.has_material(kind);
+    let u_lobe = sampler.at_bounce(BounceDim::Lobe);
+    let u = sampler.at_bounce(BounceDim::DirectionU);
+    let v = sampler.at_bounce(BounceDim::DirectionV);
+    match kind {
+        MaterialKind::Conductor if has(kind) => {
+            scene.conductors.get(i).bsdf(scene, &at).sample(wo, u, v)
+        }
+        MaterialKind::RoughDielectric if has(kind) => {
+            let bsdf = scene.rough_dielectrics.get(i).bsdf(scene, &at);
+            bsdf.sample(wo, Lobes::BOTH, u_lobe, u, v)
+        }
+        MaterialKind::ThinDielectric if has(kind) => {
+            Some(thin_dielectric(wo, scene.thin_dielectrics.get(i).ior, u_lobe))
+        }
+        MaterialKind::DiffuseTransmission if has(kind) => {
+            scene.diffuse_transmissions.get(i).bsdf(scene, &at).sample(wo, u_lobe, u, v)
+        }
+        MaterialKind::Layered if has(kind) => {
+            let bsdf = scene.layereds.get(i).bsdf(scene, &at);
+            bsdf.sample(wo, &mut sampler.stream(STREAM_SAMPLE))
+        }
+        _ => None,
+    }
+}
+
+/// f |cos wi| of such a material.
+#[inline(always)]
+fn evaluate_local(
+    scene: &SceneView,
+    surface: &SurfaceInteraction,
+    kind: MaterialKind,
+    wo: Vec3,
+    wi: Vec3,
+    sampler: &Sampler,
+) -> Color {
+    let (i, at) = (surface.material.index(), surface.texture_context());
+    let has = |kind| scene.kinds.has_material(kind);
+    match kind {
+        MaterialKind::Conductor if has(kind) => {
+            scene.conductors.get(i).bsdf(scene, &at).eval(wo, wi).f_cos
+        }
+        MaterialKind::RoughDielectric if has(kind) => {
+            scene.rough_dielectrics.get(i).bsdf(scene, &at).eval(wo, wi, Lobes::BOTH).f_cos
+        }
+        MaterialKind::DiffuseTransmission if has(kind) => {
+            scene.diffuse_transmissions.get(i).bsdf(scene, &at).eval(wo, wi).f_cos
+        }
+        MaterialKind::Layered if has(kind) => {
+            let bsdf = scene.layereds.get(i).bsdf(scene, &at);
+            bsdf.eval(wo, wi, &mut sampler.stream(STREAM_EVALUATE))
+        }
+        _ => Color::BLACK,
     }
 }

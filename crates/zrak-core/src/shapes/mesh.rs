@@ -139,7 +139,7 @@ fn face_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
     let (e1, e2) = (b - a, c - a);
     // Brought to size 1 first: squares of small areas vanish in single precision.
     let size = max(e1.abs().max_component(), e2.abs().max_component());
-    if !(size > 0.0) {
+    if size == 0.0 {
         return vec3(0.0, 0.0, 1.0);
     }
     let scale = 1.0 / size;

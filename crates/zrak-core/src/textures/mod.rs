@@ -24,7 +24,7 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::accessor::Array;
 use crate::math::{Color, Vec3};
-use crate::scene::{SceneView, TextureKind, TextureRef};
+use crate::scene::{Feature, SceneView, TextureKind, TextureRef};
 
 /// What textures look at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,7 +110,12 @@ impl ColorInput {
         if scene.kinds.textures == SOLID || self.texture.0 == 0 {
             return self.solid;
         }
-        evaluate(&TextureArrays::of(scene), *self, at)
+        let arrays = TextureArrays::of(scene);
+        if scene.kinds.has_feature(Feature::TextureCalls) {
+            evaluate(&arrays, *self, at)
+        } else {
+            evaluate_inline(&arrays, *self, at)
+        }
     }
 }
 
@@ -137,10 +142,15 @@ impl<'a> TextureArrays<'a> {
     }
 }
 
-/// Colour of a texture at a point. It is a function of its own because materials look at many
-/// textures, and a copy for each look would make the kernels many times as large.
+/// [`evaluate_inline`] as a function of its own.
 #[inline(never)]
 fn evaluate(arrays: &TextureArrays, input: ColorInput, at: &TextureContext) -> Color {
+    evaluate_inline(arrays, input, at)
+}
+
+/// Colour of a texture at a point.
+#[inline(always)]
+fn evaluate_inline(arrays: &TextureArrays, input: ColorInput, at: &TextureContext) -> Color {
     let mut input = input;
     // Checkers lead to other textures; the host made sure that they do not lead in a circle.
     while let Some(TextureKind::Checker) = input.texture.kind() {

@@ -2,6 +2,7 @@
 
 use zrak_core::accel::{MAX_DEPTH, Node};
 use zrak_core::accessor::Array;
+use zrak_core::materials::{Conductor, Roughness};
 use zrak_core::media::{NO_PLACEMENT, VACUUM};
 use zrak_core::scene::{
     MaterialKind, MaterialRef, PrimKind, PrimRef, SceneView, TextureKind, TextureRef,
@@ -145,8 +146,13 @@ fn check_material(scene: &SceneView, material: MaterialRef) -> Check {
         Some(MaterialKind::Dielectric) => scene.dielectrics.len(),
         Some(MaterialKind::Isotropic) => scene.isotropics.len(),
         Some(MaterialKind::DiffuseLight) => scene.diffuse_lights.len(),
+        Some(MaterialKind::Conductor) => scene.conductors.len(),
+        Some(MaterialKind::RoughDielectric) => scene.rough_dielectrics.len(),
+        Some(MaterialKind::ThinDielectric) => scene.thin_dielectrics.len(),
+        Some(MaterialKind::DiffuseTransmission) => scene.diffuse_transmissions.len(),
+        Some(MaterialKind::Layered) => scene.layereds.len(),
         Some(MaterialKind::Mix) => scene.mixes.len(),
-        Some(MaterialKind::Interface) => 1,
+        Some(MaterialKind::Interface) => scene.interfaces.len(),
         Some(MaterialKind::Surface) => scene.surfaces.len(),
         None => 0,
     };
@@ -238,6 +244,24 @@ fn check_meshes(scene: &SceneView) -> Check {
 
 /// Checks materials that lead to other materials, to textures and to media.
 fn check_surfaces(scene: &SceneView) -> Check {
+    let roughness = |r: Roughness| [r.u.texture, r.v.texture];
+    let metal = |m: Conductor| {
+        let [u, v] = roughness(m.roughness);
+        [m.reflectance.texture, u, v]
+    };
+    for texture in records(&scene.conductors)
+        .flat_map(metal)
+        .chain(records(&scene.rough_dielectrics).flat_map(|m| roughness(m.roughness)))
+        .chain(
+            records(&scene.diffuse_transmissions)
+                .flat_map(|m| [m.reflectance.texture, m.transmittance.texture]),
+        )
+        .chain(records(&scene.layereds).flat_map(|m| metal(m.metal)))
+        .chain(records(&scene.layereds).flat_map(|m| roughness(m.roughness)))
+        .chain(records(&scene.layereds).map(|m| m.color.texture))
+    {
+        check_texture(scene, texture)?;
+    }
     for (i, mix) in records(&scene.mixes).enumerate() {
         check_texture(scene, mix.amount.texture)?;
         for material in mix.materials {

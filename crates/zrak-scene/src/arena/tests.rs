@@ -144,6 +144,12 @@ fn good() -> SceneArrays {
         inside: 0,
         ..Surface::default()
     });
+    a.conductors.push(bytemuck::Zeroable::zeroed());
+    a.rough_dielectrics.push(bytemuck::Zeroable::zeroed());
+    a.thin_dielectrics.push(bytemuck::Zeroable::zeroed());
+    a.diffuse_transmissions.push(bytemuck::Zeroable::zeroed());
+    a.layereds.push(bytemuck::Zeroable::zeroed());
+    a.interfaces.push(0);
     a.homogeneous_media.push(bytemuck::Zeroable::zeroed());
     a.lights.push(bytemuck::Zeroable::zeroed());
     let kinds = [PrimKind::Sphere, PrimKind::Quad, PrimKind::Medium, PrimKind::Triangle];
@@ -329,6 +335,13 @@ fn surfaces_and_mixes_that_lead_astray_are_refused() {
     refused("no texture", |a| a.surfaces[0].alpha.texture = beyond);
     refused("no texture", |a| a.surfaces[0].bump.texture = beyond);
     refused("no texture", |a| a.surfaces[0].normal_map = beyond);
+    refused("no texture", |a| a.conductors[0].reflectance.texture = beyond);
+    refused("no texture", |a| a.conductors[0].roughness.v.texture = beyond);
+    refused("no texture", |a| a.rough_dielectrics[0].roughness.u.texture = beyond);
+    refused("no texture", |a| a.diffuse_transmissions[0].transmittance.texture = beyond);
+    refused("no texture", |a| a.layereds[0].color.texture = beyond);
+    refused("no texture", |a| a.layereds[0].roughness.u.texture = beyond);
+    refused("no texture", |a| a.layereds[0].metal.roughness.u.texture = beyond);
 }
 
 #[test]

@@ -6,17 +6,31 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use zrak_mesh::TriangleMesh;
 
+impl MeshDesc {
+    /// The mesh with its numbers written out, if it is one in memory.
+    #[must_use]
+    pub fn inlined(&self) -> Self {
+        match self {
+            Self::Loaded(mesh) => Self::Inline {
+                positions: mesh.positions.clone(),
+                triangles: mesh.triangles.clone(),
+                normals: mesh.normals.clone(),
+                uvs: mesh.uvs.clone(),
+                colors: mesh.colors.clone(),
+            },
+            other => other.clone(),
+        }
+    }
+}
+
 /// A triangle mesh, by the file it is in or by its numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum MeshDesc {
-    /// PLY or OBJ file, which may be gzip-ed.
+    /// PLY file, which may be gzip-ed.
     File {
         /// The file, relative to the scene file.
         path: String,
-        /// Whether to make smooth normals if the file has none, across edges of up to this angle.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        smooth_angle_deg: Option<f64>,
     },
     /// The numbers themselves.
     Inline {
@@ -34,7 +48,7 @@ pub enum MeshDesc {
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         colors: Vec<[f32; 4]>,
     },
-    /// A mesh in memory, from an importer or a program; it is written as a file beside the scene.
+    /// A mesh in memory, from an importer or a program; in a scene file its numbers are written out.
     #[serde(skip)]
     Loaded(#[schemars(skip)] Arc<TriangleMesh>),
 }

@@ -217,7 +217,7 @@ pub enum MappingDesc {
         /// Rows of the 2x3 matrix.
         matrix: [[f64; 3]; 2],
     },
-    /// Affine in world space: u = rows[0] (p, 1), v = rows[1] (p, 1).
+    /// Affine in world space: u and v are the products of the rows with (p, 1).
     Planar {
         /// Rows of the 2x4 matrix.
         matrix: [[f64; 4]; 2],

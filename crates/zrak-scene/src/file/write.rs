@@ -13,10 +13,14 @@ use crate::desc::SceneDesc;
 /// A scene file of this description.
 ///
 /// Reading it gives an equal description: numbers are as short as that allows. A number that is
-/// not finite, which no valid description has, becomes `nan`.
+/// not finite, which no valid description has, becomes `nan`. Meshes in memory are written out.
 pub fn write_string(scene: &SceneDesc) -> String {
+    let mut scene = scene.clone();
+    for mesh in scene.meshes.values_mut() {
+        *mesh = mesh.inlined();
+    }
     // A description is made of tables, arrays, strings and numbers, so this cannot fail.
-    let Ok(Value::Object(fields)) = serde_json::to_value(scene) else { return String::new() };
+    let Ok(Value::Object(fields)) = serde_json::to_value(&scene) else { return String::new() };
     let mut out = "# A scene for zrak; docs/scene-format.md explains the format.\n\n".to_owned();
     for (key, value) in fields.iter().filter(|(_, value)| !value.is_object() && !value.is_array()) {
         line(&mut out, key, value);

@@ -116,9 +116,13 @@ impl<'a> Meshes<'a> {
                     ..TriangleMesh::default()
                 }))
             }
-            MeshDesc::File { path, .. } => {
-                let _ = self.options;
-                Err(format!("cannot read {path}"))
+            MeshDesc::File { path } => {
+                let path = self.options.base_dir.join(path);
+                let limits = zrak_mesh::Limits::default();
+                match zrak_mesh::ply::read(&path, &limits) {
+                    Ok(mesh) => Ok(Arc::new(mesh)),
+                    Err(error) => Err(error.to_string()),
+                }
             }
         }
     }

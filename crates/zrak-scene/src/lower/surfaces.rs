@@ -3,9 +3,11 @@
 use std::collections::HashMap;
 
 use zrak_core::materials::{
-    Dielectric, DiffuseLight, FRESNEL_EXACT, FRESNEL_SCHLICK, Isotropic, Lambertian, Metal, Mix,
+    BASE_DIFFUSE, BASE_METAL, Conductor, Dielectric, DiffuseLight, DiffuseTransmission,
+    FRESNEL_EXACT, FRESNEL_SCHLICK, Isotropic, Lambertian, Layered, METAL_INDEX, METAL_REFLECTANCE,
+    Metal, Mix, ROUGHNESS_ALPHA, ROUGHNESS_SQRT, ROUGHNESS_SQUARE, RoughDielectric, Roughness,
     SIDES_BOTH, SIDES_FRONT, SURFACE_ALPHA, SURFACE_BUMP, SURFACE_CUTOFF, SURFACE_EMISSION,
-    SURFACE_MEDIUM, SURFACE_NORMAL_MAP, SURFACE_ONE_SIDED, Surface,
+    SURFACE_MEDIUM, SURFACE_NORMAL_MAP, SURFACE_ONE_SIDED, Surface, ThinDielectric,
 };
 use zrak_core::math::Color;
 use zrak_core::scene::{MaterialKind, MaterialRef, TextureKind, TextureRef};
@@ -18,8 +20,9 @@ use zrak_image::{Texels, TextureImage};
 use super::{LowerOptions, assets};
 use crate::arena::SceneArrays;
 use crate::desc::{
-    ColorDesc, FresnelDesc, ImageFilter, LightSides, MaterialDesc, MediumInterfaceDesc,
-    NoisePattern, ScalarDesc, SceneDesc, TextureDesc, Triple,
+    CoatDesc, ColorDesc, ConductorDesc, FresnelDesc, ImageFilter, LightSides, MaterialDesc,
+    MediumInterfaceDesc, NoisePattern, RoughnessDesc, RoughnessMap, ScalarDesc, SceneDesc,
+    TextureDesc, Triple,
 };
 use crate::validate::{KeyPath, Problem};
 
@@ -190,6 +193,59 @@ impl<'a> Lowering<'a, '_> {
         }
     }
 
+    fn roughness(&mut self, desc: &'a RoughnessDesc) -> (Roughness, bool) {
+        let (u, mut needs_uv) = self.scalar_input(&desc.u);
+        let mut v = u;
+        if let Some(desc) = &desc.v {
+            v = self.scalar_input(desc).0;
+            // Which direction is which is a matter of the texture's.
+            needs_uv = true;
+        }
+        let map = match desc.map {
+            RoughnessMap::Alpha => ROUGHNESS_ALPHA,
+            RoughnessMap::Sqrt => ROUGHNESS_SQRT,
+            RoughnessMap::Square => ROUGHNESS_SQUARE,
+        };
+        (Roughness { u, v, map, _pad: 0 }, needs_uv)
+    }
+
+    fn conductor(
+        &mut self,
+        metal: &'a ConductorDesc,
+        roughness: &'a RoughnessDesc,
+    ) -> (Conductor, bool) {
+        let (roughness, mut needs_uv) = self.roughness(roughness);
+        let mut conductor = Conductor { roughness, ..bytemuck::Zeroable::zeroed() };
+        match metal {
+            ConductorDesc::Index { eta, k } => {
+                (conductor.kind, conductor.eta, conductor.k) =
+                    (METAL_INDEX, color(*eta), color(*k));
+            }
+            ConductorDesc::Reflectance { reflectance } => {
+                let lowered = self.color_input(reflectance);
+                needs_uv |= lowered.needs_uv;
+                (conductor.kind, conductor.reflectance) = (METAL_REFLECTANCE, lowered.input);
+            }
+        }
+        (conductor, needs_uv)
+    }
+
+    /// Adds a coated base; says whether its coat looks at texture coordinates.
+    fn coat(&mut self, base: Layered, coat: &'a CoatDesc) -> bool {
+        let (roughness, needs_uv) = self.roughness(&coat.roughness);
+        self.arrays.layereds.push(Layered {
+            roughness,
+            ior: coat.ior as f32,
+            thickness: coat.thickness as f32,
+            albedo: color(coat.albedo),
+            g: coat.g as f32,
+            max_depth: coat.max_depth,
+            n_samples: coat.n_samples,
+            ..base
+        });
+        needs_uv
+    }
+
     /// The material of this name, lowered when it is first asked for: inner ones come first. Validation
     /// has made sure that it exists and does not lead to itself.
     fn material_of(&mut self, name: &'a str) -> LoweredMaterial {
@@ -312,8 +368,50 @@ impl<'a> Lowering<'a, '_> {
                 self.arrays.mixes.push(Mix { amount, materials: parts.map(|part| part.handle) });
                 (MaterialKind::Mix, self.arrays.mixes.len(), needs_uv)
             }
-            MaterialDesc::Interface => (MaterialKind::Interface, 1, false),
+            MaterialDesc::Interface => {
+                self.arrays.interfaces.push(0);
+                (MaterialKind::Interface, self.arrays.interfaces.len(), false)
+            }
             MaterialDesc::Surface { .. } => return self.surface(desc),
+            MaterialDesc::Conductor { metal, roughness } => {
+                let (conductor, needs_uv) = self.conductor(metal, roughness);
+                self.arrays.conductors.push(conductor);
+                (MaterialKind::Conductor, self.arrays.conductors.len(), needs_uv)
+            }
+            MaterialDesc::RoughDielectric { ior, roughness } => {
+                let (roughness, needs_uv) = self.roughness(roughness);
+                let dielectric = RoughDielectric { roughness, ior: *ior as f32, _pad: 0 };
+                self.arrays.rough_dielectrics.push(dielectric);
+                (MaterialKind::RoughDielectric, self.arrays.rough_dielectrics.len(), needs_uv)
+            }
+            MaterialDesc::ThinDielectric { ior } => {
+                self.arrays.thin_dielectrics.push(ThinDielectric { ior: *ior as f32 });
+                (MaterialKind::ThinDielectric, self.arrays.thin_dielectrics.len(), false)
+            }
+            MaterialDesc::DiffuseTransmission { reflectance, transmittance } => {
+                let r = self.color_input(reflectance);
+                let t = self.color_input(transmittance);
+                let both = DiffuseTransmission { reflectance: r.input, transmittance: t.input };
+                self.arrays.diffuse_transmissions.push(both);
+                let len = self.arrays.diffuse_transmissions.len();
+                (MaterialKind::DiffuseTransmission, len, r.needs_uv || t.needs_uv)
+            }
+            MaterialDesc::CoatedDiffuse { color, coat } => {
+                let lowered = self.color_input(color);
+                let base = Layered {
+                    base: BASE_DIFFUSE,
+                    color: lowered.input,
+                    ..bytemuck::Zeroable::zeroed()
+                };
+                let needs_uv = self.coat(base, coat) || lowered.needs_uv;
+                (MaterialKind::Layered, self.arrays.layereds.len(), needs_uv)
+            }
+            MaterialDesc::CoatedConductor { metal, metal_roughness, coat } => {
+                let (metal, uv) = self.conductor(metal, metal_roughness);
+                let base = Layered { base: BASE_METAL, metal, ..bytemuck::Zeroable::zeroed() };
+                let needs_uv = self.coat(base, coat) || uv;
+                (MaterialKind::Layered, self.arrays.layereds.len(), needs_uv)
+            }
             _ => (MaterialKind::Lambertian, 1, false),
         };
         LoweredMaterial { handle: MaterialRef::new(kind, index as u32 - 1), needs_uv }

@@ -6,7 +6,7 @@ use super::checker::Checker;
 use super::limits::{LENGTH_MIN, MIX_NESTING_MAX};
 use super::problem::KeyPath;
 use super::textures;
-use crate::desc::{ColorDesc, MaterialDesc, ScalarDesc};
+use crate::desc::{CoatDesc, ColorDesc, ConductorDesc, MaterialDesc, RoughnessDesc, ScalarDesc};
 
 pub(super) fn check(checker: &mut Checker<'_>) {
     let scene = checker.scene;
@@ -42,7 +42,37 @@ pub(super) fn check(checker: &mut Checker<'_>) {
                 }
                 MaterialDesc::Interface => {}
                 MaterialDesc::Surface { .. } => surface(checker, material),
-                _ => checker.note("kind", "this kind of material is not rendered yet", None),
+                MaterialDesc::Conductor { metal, roughness } => {
+                    reflected.extend(conductor(checker, metal));
+                    rough(checker, "roughness", roughness);
+                }
+                MaterialDesc::RoughDielectric { ior, roughness } => {
+                    index(checker, *ior);
+                    rough(checker, "roughness", roughness);
+                }
+                MaterialDesc::ThinDielectric { ior } => index(checker, *ior),
+                MaterialDesc::DiffuseTransmission { reflectance, transmittance } => {
+                    reflected.extend(albedo_in(checker, "reflectance", reflectance));
+                    reflected.extend(albedo_in(checker, "transmittance", transmittance));
+                    if let (ColorDesc::Solid(r), ColorDesc::Solid(t)) = (reflectance, transmittance)
+                        && (0..3).any(|i| r[i] + t[i] > 1.0 + 1e-9)
+                    {
+                        let message = "`reflectance` and `transmittance` are together more than 1";
+                        checker.note("transmittance", message, None);
+                    }
+                }
+                MaterialDesc::CoatedDiffuse { color, coat } => {
+                    reflected.extend(albedo(checker, color));
+                    coat_of(checker, coat);
+                }
+                MaterialDesc::CoatedConductor { metal, metal_roughness, coat } => {
+                    reflected.extend(conductor(checker, metal));
+                    rough(checker, "metal_roughness", metal_roughness);
+                    coat_of(checker, coat);
+                }
+                MaterialDesc::Principled { .. } => {
+                    checker.note("kind", "this kind of material is not rendered yet", None);
+                }
             });
         }
     });
@@ -57,6 +87,55 @@ pub(super) fn check(checker: &mut Checker<'_>) {
             }
         }
     }
+}
+
+/// Checks a metal; a texture's name is given back.
+fn conductor<'a>(checker: &mut Checker<'_>, metal: &'a ConductorDesc) -> Option<&'a str> {
+    checker.enter("metal", |checker| match metal {
+        ConductorDesc::Index { eta, k } => {
+            if checker.triple("eta", *eta) && eta.iter().any(|&x| x < 1e-6) {
+                checker.note("eta", "`eta` must have numbers of at least 1e-6", None);
+            }
+            if checker.triple("k", *k) && k.iter().any(|&x| x < 0.0) {
+                checker.note("k", "`k` must have numbers from 0 on", None);
+            }
+            None
+        }
+        ConductorDesc::Reflectance { reflectance } => {
+            albedo_in(checker, "reflectance", reflectance)
+        }
+    })
+}
+
+fn rough(checker: &mut Checker<'_>, key: &str, roughness: &RoughnessDesc) {
+    checker.enter(key, |checker| {
+        scalar(checker, "u", &roughness.u, Some([0.0, 1.0]));
+        if let Some(v) = &roughness.v {
+            scalar(checker, "v", v, Some([0.0, 1.0]));
+        }
+    });
+}
+
+fn index(checker: &mut Checker<'_>, ior: f64) {
+    let help = "water has 1.33, glass 1.5, air inside glass 1/1.5 = 0.6667";
+    checker.require("ior", ior, |x| x >= LENGTH_MIN, "more than 0", Some(help));
+}
+
+fn coat_of(checker: &mut Checker<'_>, coat: &CoatDesc) {
+    checker.enter("coat", |checker| {
+        rough(checker, "roughness", &coat.roughness);
+        index(checker, coat.ior);
+        checker.require("thickness", coat.thickness, |x| x >= 0.0, "at least 0", None);
+        let path = checker.path_of("albedo");
+        checker.albedo_at(&path, coat.albedo);
+        let ok = |g: f64| g.abs() < 1.0;
+        checker.require("g", coat.g, ok, "between -1 and 1, both excluded", None);
+        for (key, n) in [("max_depth", coat.max_depth), ("n_samples", coat.n_samples)] {
+            if !(1..=1000).contains(&n) {
+                checker.note(key, format!("`{key}` must be from 1 to 1000, is {n}"), None);
+            }
+        }
+    });
 }
 
 fn surface(checker: &mut Checker<'_>, material: &MaterialDesc) {
@@ -170,14 +249,19 @@ fn mixes(checker: &mut Checker<'_>) {
 
 /// Checks a reflected share; a texture's name is given back to be looked at once for all.
 fn albedo<'a>(checker: &mut Checker<'_>, color: &'a ColorDesc) -> Option<&'a str> {
+    albedo_in(checker, "color", color)
+}
+
+/// The same for the field `key`.
+fn albedo_in<'a>(checker: &mut Checker<'_>, key: &str, color: &'a ColorDesc) -> Option<&'a str> {
     match color {
         ColorDesc::Solid(color) => {
-            let path = checker.path_of("color");
+            let path = checker.path_of(key);
             checker.albedo_at(&path, *color);
             None
         }
         ColorDesc::Texture(name) => {
-            textures::reference(checker, "color", name);
+            textures::reference(checker, key, name);
             Some(name)
         }
     }

@@ -18,14 +18,10 @@ pub(super) fn check_meshes(checker: &mut Checker<'_>) {
 
 fn mesh_of(checker: &mut Checker<'_>, mesh: &MeshDesc) {
     match mesh {
-        MeshDesc::File { path, smooth_angle_deg } => {
+        MeshDesc::File { path } => {
             if path.is_empty() {
-                let help = "name a PLY or OBJ file, relative to the scene file";
+                let help = "name a PLY file, relative to the scene file";
                 checker.note("path", "`path` is empty", Some(help));
-            }
-            if let Some(angle) = *smooth_angle_deg {
-                let ok = |x: f64| (0.0..=180.0).contains(&x);
-                checker.require("smooth_angle_deg", angle, ok, "from 0 to 180 degrees", None);
             }
         }
         MeshDesc::Inline { positions, triangles, normals, uvs, colors } => {
@@ -62,7 +58,7 @@ fn mesh_of(checker: &mut Checker<'_>, mesh: &MeshDesc) {
 }
 
 fn numbers<const N: usize>(checker: &mut Checker<'_>, key: &str, values: &[[f32; N]]) {
-    let is_bad = |v: &[f32; N]| v.iter().any(|x| !(x.abs() <= 1e12));
+    let is_bad = |v: &[f32; N]| v.iter().any(|x| !(-1e12..=1e12).contains(x));
     if let Some(i) = values.iter().position(is_bad) {
         checker.enter(key, |checker| {
             let message = "numbers must lie in [-1e12, 1e12]";

@@ -1,0 +1,358 @@
+//! Whole files, good and bad.
+
+use std::path::{Path, PathBuf};
+
+use proptest::prelude::*;
+use zrak_scene::desc::{
+    BackgroundDesc, ColorDesc, ConductorDesc, LightDesc, LightSides, MaterialDesc, MeshDesc,
+    ObjectDesc, ProjectionDesc, ScalarDesc, TextureDesc,
+};
+use zrak_scene::validate::validate;
+
+use crate::{ImportOptions, Imported, import};
+
+/// A folder with a scene in it.
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new(files: &[(&str, &str)]) -> Self {
+        let folder = Self(tempfile::tempdir().unwrap());
+        for (name, text) in files {
+            std::fs::write(folder.path(name), text).unwrap();
+        }
+        folder
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+}
+
+const HEAD: &str = "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\n\
+                    Film \"rgb\" \"integer xresolution\" 200 \"integer yresolution\" 100\nWorldBegin\n";
+
+fn read(world: &str) -> Imported {
+    let folder = Folder::new(&[("scene.pbrt", &format!("{HEAD}{world}"))]);
+    let imported = import(&folder.path("scene.pbrt"), &ImportOptions::default()).unwrap();
+    let problems = validate(&imported.desc);
+    assert!(problems.is_empty(), "{problems:?}");
+    imported
+}
+
+#[track_caller]
+fn refused(text: &str, words: &str) {
+    let folder = Folder::new(&[("scene.pbrt", text)]);
+    let error = import(&folder.path("scene.pbrt"), &ImportOptions::default()).unwrap_err();
+    let shown = error.to_string();
+    assert!(shown.contains(words), "{shown} does not say {words}");
+    assert!(error.line_column().is_some(), "{shown} has no place");
+}
+
+const TRIANGLE: &str = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]\n";
+
+#[test]
+fn cameras_are_left_handed_and_fov_is_on_the_shorter_side() {
+    let desc = read(TRIANGLE).desc;
+    let camera = &desc.camera;
+    assert_eq!((camera.width, camera.height), (200, 100));
+    assert_eq!(camera.look_from, [0.0, 0.0, 5.0]);
+    assert!((camera.vfov_deg - 40.0).abs() < 1e-9);
+    // pbrt's x axis points to the left of a right-handed viewer.
+    assert!(camera.flip_x);
+    let tall = HEAD.replace("200", "50").replace("Camera", "Scale -1 1 1 Camera");
+    let folder = Folder::new(&[("s.pbrt", &tall)]);
+    let desc = import(&folder.path("s.pbrt"), &ImportOptions::default()).unwrap().desc;
+    assert!(!desc.camera.flip_x);
+    let half_width = (20.0_f64.to_radians().tan()) * 1.0;
+    let expected = 2.0 * (half_width * 2.0).atan().to_degrees();
+    assert!((desc.camera.vfov_deg - expected).abs() < 1e-9, "{}", desc.camera.vfov_deg);
+}
+
+#[test]
+fn crops_and_projections() {
+    let text = "Camera \"orthographic\" \"float screenwindow\" [-2 2 -1 1]\n\
+                Film \"rgb\" \"integer xresolution\" 200 \"integer yresolution\" 100 \
+                \"float cropwindow\" [0.25 0.5 0 1] \"string filename\" \"a.png\"\nWorldBegin\n";
+    let folder = Folder::new(&[("s.pbrt", text)]);
+    let imported = import(&folder.path("s.pbrt"), &ImportOptions::default()).unwrap();
+    let camera = &imported.desc.camera;
+    assert_eq!((camera.width, camera.height), (50, 100));
+    assert_eq!(camera.window, [0.25, 0.5, 0.0, 1.0]);
+    assert_eq!(camera.projection, ProjectionDesc::Orthographic { height: 2.0 });
+    assert_eq!(imported.filename.as_deref(), Some("a.png"));
+}
+
+#[test]
+fn attributes_are_forgotten_and_transforms_pile_up() {
+    let desc = read(
+        "AttributeBegin\n Translate 1 2 3\n Scale 2 2 2\n Material \"diffuse\" \"rgb reflectance\" [.1 .2 .3]\n\
+         Shape \"sphere\" \"float radius\" 2\nAttributeEnd\nShape \"sphere\"\n",
+    )
+    .desc;
+    let [
+        ObjectDesc::Sphere { radius, transform, material, .. },
+        ObjectDesc::Sphere { transform: none, material: default, .. },
+    ] = &desc.objects[..]
+    else {
+        panic!("{:?}", desc.objects)
+    };
+    assert_eq!((*radius, none.len(), default.as_str()), (2.0, 0, "default"));
+    let zrak_scene::desc::TransformStep::Matrix(m) = transform[0] else { panic!() };
+    assert_eq!(m, [[2.0, 0.0, 0.0, 1.0], [0.0, 2.0, 0.0, 2.0], [0.0, 0.0, 2.0, 3.0]]);
+    let color = ColorDesc::Solid([0.1, 0.2, 0.3]);
+    assert_eq!(desc.materials[material], MaterialDesc::Lambertian { color });
+}
+
+#[test]
+fn lights_shine_as_much_as_they_say() {
+    let desc = read(
+        "LightSource \"point\" \"point3 from\" [1 2 3] \"rgb I\" [4 5 6] \"float scale\" 2\n\
+         LightSource \"distant\" \"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb L\" [3 3 3]\n\
+         LightSource \"spot\" \"point3 to\" [0 0 1] \"float coneangle\" 20\n\
+         LightSource \"infinite\" \"blackbody L\" 6500 \"float scale\" 3\n\
+         AreaLightSource \"diffuse\" \"rgb L\" [7 8 9] \"bool twosided\" true\nShape \"disk\"\n",
+    )
+    .desc;
+    assert_eq!(
+        desc.lights[0],
+        LightDesc::Point { position: [1.0, 2.0, 3.0], intensity: [8.0, 10.0, 12.0] }
+    );
+    let LightDesc::Distant { direction, irradiance } = &desc.lights[1] else { panic!() };
+    assert_eq!((*direction, *irradiance), ([0.0, -1.0, 0.0], [3.0; 3]));
+    let LightDesc::Spot { falloff_start_deg, .. } = &desc.lights[2] else { panic!() };
+    assert_eq!(*falloff_start_deg, 15.0);
+    // A black body is normalised to a luminance of 1.
+    let BackgroundDesc::Constant { color: [r, g, b] } = desc.background else { panic!() };
+    assert!((0.2126 * r + 0.7152 * g + 0.0722 * b - 3.0).abs() < 1e-3);
+    let ObjectDesc::Disk { material, .. } = &desc.objects[0] else { panic!() };
+    let MaterialDesc::Surface { emission, emission_sides, .. } = &desc.materials[material] else {
+        panic!()
+    };
+    assert_eq!(*emission, Some(ColorDesc::Solid([7.0, 8.0, 9.0])));
+    assert_eq!(*emission_sides, LightSides::Both);
+}
+
+#[test]
+fn materials_and_textures() {
+    let desc = read(
+        "MakeNamedMaterial \"gold\" \"string type\" \"conductor\" \"spectrum eta\" \"metal-Au-eta\" \
+         \"spectrum k\" \"metal-Au-k\" \"float roughness\" 0.25\n\
+         MakeNamedMaterial \"glass\" \"string type\" \"dielectric\" \"spectrum eta\" \"glass-BK7\"\n\
+         MakeNamedMaterial \"both\" \"string type\" \"mix\" \"string materials\" [\"gold\" \"glass\"] \
+         \"float amount\" 0.3\nNamedMaterial \"both\"\nShape \"sphere\" \"float alpha\" 0.5\n\
+         Material \"coateddiffuse\" \"float roughness\" 0.1 \"bool remaproughness\" false\n\
+         Shape \"sphere\"\n",
+    )
+    .desc;
+    let MaterialDesc::Conductor { metal, roughness } = &desc.materials["named:gold"] else {
+        panic!()
+    };
+    assert!(matches!(metal, ConductorDesc::Index { eta, .. } if eta[2] > 1.0));
+    assert_eq!(roughness.u, ScalarDesc::Value(0.25));
+    assert_eq!(roughness.map, zrak_scene::desc::RoughnessMap::Sqrt);
+    let MaterialDesc::Dielectric { ior, .. } = desc.materials["named:glass"] else { panic!() };
+    assert!((ior - 1.5167).abs() < 1e-9);
+    let ObjectDesc::Sphere { material, .. } = &desc.objects[0] else { panic!() };
+    let MaterialDesc::Surface { base, alpha, .. } = &desc.materials[material] else { panic!() };
+    assert_eq!((base.as_str(), alpha), ("named:both", &Some(ScalarDesc::Value(0.5))));
+    let ObjectDesc::Sphere { material, .. } = &desc.objects[1] else { panic!() };
+    let MaterialDesc::CoatedDiffuse { coat, .. } = &desc.materials[material] else { panic!() };
+    assert_eq!(coat.roughness.map, zrak_scene::desc::RoughnessMap::Alpha);
+}
+
+#[test]
+fn textures_are_described_where_they_cannot_be_rendered_yet() {
+    let world = "Texture \"a\" \"spectrum\" \"checkerboard\" \"float uscale\" 4 \"rgb tex1\" [1 0 0]\n\
+                 Texture \"b\" \"spectrum\" \"scale\" \"texture tex\" \"a\" \"float scale\" 0.5\n";
+    let folder = Folder::new(&[("s.pbrt", &format!("{HEAD}{world}"))]);
+    let desc = import(&folder.path("s.pbrt"), &ImportOptions::default()).unwrap().desc;
+    let TextureDesc::Multiply { a, b } = &desc.textures["spectrum:b"] else { panic!() };
+    assert_eq!(*a, ColorDesc::Texture("spectrum:a".to_owned()));
+    assert_eq!(*b, ColorDesc::Solid([0.5; 3]));
+}
+
+#[test]
+fn objects_are_placed_and_move() {
+    let desc = read(&format!(
+        "ObjectBegin \"thing\"\n{TRIANGLE}Shape \"sphere\"\nObjectEnd\n\
+         AttributeBegin\nTranslate 1 0 0\nObjectInstance \"thing\"\nAttributeEnd\n\
+         ActiveTransform EndTime\nTranslate 0 1 0\nActiveTransform All\nShape \"sphere\"\n"
+    ))
+    .desc;
+    assert_eq!(desc.prototypes["thing"].len(), 2);
+    let [
+        ObjectDesc::Instance { prototype, transform_end: None, .. },
+        ObjectDesc::Instance { transform_end: Some(_), .. },
+    ] = &desc.objects[..]
+    else {
+        panic!("{:?}", desc.objects)
+    };
+    assert_eq!(prototype, "thing");
+}
+
+#[test]
+fn media_bound_by_surfaces() {
+    let desc = read(
+        "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [1 2 3] \
+         \"rgb sigma_a\" [0 0 1] \"float scale\" 2 \"float g\" 0.5\n\
+         Material \"interface\"\nMediumInterface \"fog\" \"\"\nShape \"sphere\"\n\
+         MediumInterface \"fog\"\nShape \"sphere\"\n",
+    )
+    .desc;
+    assert_eq!(desc.media["fog"].sigma_s, [2.0, 4.0, 6.0]);
+    let ObjectDesc::Sphere { material, .. } = &desc.objects[0] else { panic!() };
+    let MaterialDesc::Surface { medium: Some(medium), .. } = &desc.materials[material] else {
+        panic!()
+    };
+    assert_eq!((medium.inside.as_deref(), medium.outside.as_deref()), (Some("fog"), None));
+    // The same medium on both sides is no boundary.
+    let ObjectDesc::Sphere { material, .. } = &desc.objects[1] else { panic!() };
+    assert_eq!(desc.materials[material], MaterialDesc::Interface);
+}
+
+#[test]
+fn files_include_files_and_meshes() {
+    let files = [
+        (
+            "scene.pbrt",
+            format!("{HEAD}Include \"more.pbrt\"\nImport \"more.pbrt\"\nShape \"sphere\"\n"),
+        ),
+        (
+            "more.pbrt",
+            "Translate 0 0 1\nShape \"plymesh\" \"string filename\" \"t.ply\"\n".to_owned(),
+        ),
+        (
+            "t.ply",
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+             property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
+             0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+                .to_owned(),
+        ),
+    ];
+    let files: Vec<(&str, &str)> = files.iter().map(|(n, t)| (*n, t.as_str())).collect();
+    let folder = Folder::new(&files);
+    let desc = import(&folder.path("scene.pbrt"), &ImportOptions::default()).unwrap().desc;
+    assert_eq!(desc.objects.len(), 3);
+    assert!(
+        desc.meshes.values().all(|m| matches!(m, MeshDesc::Loaded(m) if m.triangles.len() == 1))
+    );
+    let ObjectDesc::Sphere { transform, .. } = &desc.objects[2] else { panic!() };
+    // What an import changes is forgotten, what an include changes is not.
+    let zrak_scene::desc::TransformStep::Matrix(m) = transform[0] else { panic!() };
+    assert_eq!(m[2][3], 1.0);
+}
+
+#[test]
+fn what_is_wrong_is_shown_at_its_place() {
+    let at = |world: &str| format!("{HEAD}{world}");
+    for (text, words) in [
+        ("WorldBegun".to_owned(), "did you mean `WorldBegin`?"),
+        (at("Shape \"sphere\" \"flaot radius\" 1"), "did you mean `float`?"),
+        (at("Shape \"sphere\" \"float radius\" [1"), "the bracket is not closed"),
+        (at("Shape \"sphere\" \"float radius\" \"one\""), "a number must stand here"),
+        (at("Shape \"sphere\" \"float radius\" -1"), "`radius` must be more than 0"),
+        (at("Shape \"spheer\""), "unknown shape \"spheer\""),
+        (at("Shape \"sphere"), "the string has no end"),
+        (at("Material \"difuse\""), "did you mean \"diffuse\"?"),
+        (at("NamedMaterial \"gold\""), "there is no material \"gold\""),
+        (at("Texture \"a\" \"spectrum\" \"imagemap\""), "needs a \"string filename\""),
+        (at("Material \"diffuse\" \"texture reflectance\" \"a\""), "no spectrum texture \"a\""),
+        (at("AttributeEnd"), "there is no AttributeBegin before this"),
+        (at("AttributeBegin"), "AttributeBegin has no end"),
+        (at("AttributeBegin TransformEnd"), "AttributeBegin is closed by TransformEnd"),
+        (at("ObjectBegin \"a\""), "ObjectBegin"),
+        (at("ObjectInstance \"a\""), "there is no object \"a\""),
+        (at("MediumInterface \"fog\" \"\""), "there is no medium \"fog\""),
+        (at("LightSource \"lamp\""), "unknown light \"lamp\""),
+        (at("Scale 1 0 1"), "flattens space"),
+        (at("Rotate 10 0 0 0"), "no direction"),
+        (at("Translate 1 2"), "but the file ends"),
+        (at("Translate 1 2 x"), "a number must stand here"),
+        (
+            at(
+                "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 3]",
+            ),
+            "corner beyond",
+        ),
+        (
+            at(
+                "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 -2]",
+            ),
+            "no index",
+        ),
+        (at("Shape \"trianglemesh\" \"point3 P\" [0 0 1e39 1 0 0 0 1 0]"), "not finite"),
+        (at("Shape \"plymesh\" \"string filename\" \"none.ply\""), "cannot read"),
+        (at("Shape \"plymesh\" \"string filename\" \"../a.ply\""), "outside of the scene's folder"),
+        (at("Include \"/etc/passwd\""), "outside of the scene's folder"),
+        (at("Include \"scene.pbrt\""), "includes itself"),
+        (at("]"), "a directive must stand here"),
+        (at("ColorSpace \"adobe\""), "unknown colour space"),
+        (at("Transform [1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1]"), "not affine"),
+        (
+            at("Material \"conductor\" \"spectrum eta\" [400 1 300 2] \"spectrum k\" [400 1]"),
+            "must increase",
+        ),
+        ("Shape \"sphere\"".to_owned(), "must come after WorldBegin"),
+        ("Camera \"perspective\"".to_owned(), "no WorldBegin"),
+        ("WorldBegin".to_owned(), "no Camera"),
+        ("Camera \"fisheye\"\nWorldBegin".to_owned(), "unknown camera"),
+    ] {
+        refused(&text, words);
+    }
+}
+
+#[test]
+fn what_has_no_effect_is_warned_about() {
+    let imported =
+        read("Shape \"sphere\" \"float raduis\" 3\nMaterial \"hair\"\nShape \"sphere\"\n");
+    let shown: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(shown.len(), 2, "{shown:?}");
+    assert!(shown[0].contains("scene.pbrt:5: parameter \"raduis\" is not used here"), "{shown:?}");
+    assert!(shown[1].contains(":6: material \"hair\" is rendered as"), "{shown:?}");
+}
+
+#[test]
+fn limits_hold() {
+    let folder = Folder::new(&[("scene.pbrt", &format!("{HEAD}{}", "# much\n".repeat(10_000)))]);
+    let options = ImportOptions { max_bytes: 10_000, ..ImportOptions::default() };
+    let error = import(&folder.path("scene.pbrt"), &options).unwrap_err().to_string();
+    assert!(error.contains("larger than the limit"), "{error}");
+    let error = import(Path::new("none.pbrt"), &ImportOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("there is no such scene file"), "{error}");
+}
+
+#[test]
+fn a_link_out_of_the_folder_is_refused() {
+    #[cfg(unix)]
+    {
+        let elsewhere = Folder::new(&[("a.pbrt", "# nothing")]);
+        let scene = format!("{HEAD}Include \"a.pbrt\"\n");
+        let folder = Folder::new(&[("scene.pbrt", &scene)]);
+        std::os::unix::fs::symlink(elsewhere.path("a.pbrt"), folder.path("a.pbrt")).unwrap();
+        let path = folder.path("scene.pbrt");
+        let error = import(&path, &ImportOptions::default()).unwrap_err().to_string();
+        assert!(error.contains("outside of the scene's folder"), "{error}");
+        let options = ImportOptions { allow_external: true, ..ImportOptions::default() };
+        assert!(import(&path, &options).is_ok());
+    }
+}
+
+proptest! {
+    /// Whatever is in a file, reading it ends, without a panic.
+    #[test]
+    fn damaged_files_do_no_harm(at in any::<prop::sample::Index>(), cut in 0_usize..40, junk in "[ -~\n]{0,12}") {
+        let text = format!(
+            "{HEAD}Texture \"t\" \"float\" \"fbm\" \"integer octaves\" 3\nAttributeBegin\nRotate 3 1 2 3\n\
+             Material \"conductor\" \"texture roughness\" \"t\" \"spectrum eta\" [400 1 500 2]\n\
+             {TRIANGLE}AreaLightSource \"diffuse\" \"blackbody L\" 3000\nShape \"loopsubdiv\" \
+             \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2] \"integer levels\" 1\nAttributeEnd\n"
+        );
+        let at = at.index(text.len());
+        let end = (at + cut).min(text.len());
+        let damaged = format!("{}{junk}{}", &text[..at], &text[end..]);
+        let folder = Folder::new(&[("scene.pbrt", &damaged)]);
+        if let Ok(imported) = import(&folder.path("scene.pbrt"), &ImportOptions::default()) {
+            let _ = validate(&imported.desc);
+        }
+    }
+}
