@@ -33,8 +33,8 @@ use crate::wide::widen;
 /// the number of threads and the order of the primitives. A tree without primitives is one node without
 /// children.
 ///
-/// All methods panic if there would be more than 2^28 nodes, the limit of handles: n primitives make
-/// max(n - 1, 1) binary nodes.
+/// Methods that add a tree panic if there is no room for its nodes; see
+/// [`has_room_for`](Self::has_room_for).
 #[derive(Clone, Debug)]
 pub struct Trees {
     /// Binary trees.
@@ -48,6 +48,9 @@ impl Default for Trees {
         Self::new()
     }
 }
+
+/// The most nodes: handles have 28 bits for an index.
+const MAX_NODES: usize = 1 << 28;
 
 /// Builds one tree over primitives with their bounds. Without primitives, the root has no children.
 #[must_use]
@@ -71,6 +74,13 @@ impl Trees {
     #[must_use]
     pub fn new() -> Self {
         Self { nodes2: vec![Node::EMPTY], nodes8: vec![Node::EMPTY] }
+    }
+
+    /// Whether handles can tell the nodes apart if a tree over so many primitives is added. It has one
+    /// binary node less than primitives, and fewer wide ones.
+    #[must_use]
+    pub fn has_room_for(&self, n_prims: usize) -> bool {
+        n_prims.saturating_sub(1).max(1) <= MAX_NODES - self.nodes2.len()
     }
 
     /// Adds a tree over primitives with their bounds; gives the indices of its roots in the nodes of
@@ -119,6 +129,7 @@ impl Trees {
         prims: Cow<[(PrimRef, Bounds)]>,
         options: &BuildOptions,
     ) {
+        assert!(self.has_room_for(prims.len()), "more than 2^28 nodes");
         let records: Vec<Record> = prims.par_iter().map(Record::new).collect();
         drop(prims);
         let n = records.len();

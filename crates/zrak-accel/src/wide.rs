@@ -51,7 +51,7 @@ struct Subtree {
     n: usize,
 }
 
-/// The wide nodes below a node that is one of them itself, in the order of their parents.
+/// A binary tree, and which of its nodes become wide ones.
 struct Tree<'a> {
     /// All binary nodes of this tree, depth first.
     nodes: &'a [Node<2>],
@@ -71,8 +71,7 @@ fn area_of(node: &Node<2>) -> f32 {
     if area > f32::MIN_POSITIVE { area } else { f32::MIN_POSITIVE }
 }
 
-/// Numbers of primitives below the children of the first node of a subtree of `n`, of which `nodes` is
-/// the whole tree.
+/// The two children of a node.
 fn split_of(nodes: &[Node<2>], base: u32, subtree: Subtree) -> [Subtree; 2] {
     let Subtree { node, n } = subtree;
     let right = nodes[node].children[1];

@@ -87,3 +87,14 @@ fn progress_is_told_and_ends_at_one() {
         }
     }
 }
+
+#[test]
+fn there_is_room_for_as_many_nodes_as_handles_can_tell_apart() {
+    let max = 1 << 28;
+    let mut trees = Trees::new();
+    for (n, expected) in [(0, true), (max, true), (max + 1, false), (usize::MAX, false)] {
+        assert_eq!(trees.has_room_for(n), expected, "{n}");
+    }
+    trees.append(mixed(11, 0));
+    assert!(trees.has_room_for(max - 10) && !trees.has_room_for(max - 9));
+}
