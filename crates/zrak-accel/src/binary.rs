@@ -2,196 +2,142 @@
 //!
 //! MacDonald and Booth, *Heuristics for ray tracing using space subdivision*, 1990: a ray that meets
 //! a box meets a part of it with probability about the ratio of their areas, so the best split has the
-//! smallest sum of area times number of primitives. Small sets are swept exactly, large ones with
-//! bins (Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies*, 2007).
+//! smallest sum of area times number of primitives. Large sets are split between bins (see
+//! [`crate::bins`]), small ones exactly (see [`crate::sweep`]).
+//!
+//! A tree over n primitives has n - 1 nodes. They are laid out depth first, so it is known where a
+//! subtree goes before it is built, and threads write to parts of one array.
+//!
+//! Every decision depends on the set of primitives alone, neither on their order nor on who computes
+//! it: unions and counts are exact, and orders are total. So the tree is the same on any number of
+//! threads.
 
-use zrak_core::accel::MAX_DEPTH;
-use zrak_core::math::{Bounds, Vec3};
+use rayon::prelude::*;
+use zrak_core::accel::{MAX_DEPTH, Node};
 
-/// Sets of up to this many primitives are swept exactly.
-const SWEEP_LIMIT: usize = 4096;
-/// Bins for larger ones.
-const N_BINS: usize = 32;
+use crate::bins::{self, PARALLEL_LIMIT, center_bounds};
+use crate::progress::Progress;
+use crate::record::{Child, Planes, Record, node_of};
+use crate::sweep::{MAX_SWEPT, Place, Sweeper};
 
-/// Node of a [`BinaryTree`].
-#[derive(Clone, Copy, Debug)]
-pub enum BinaryNode {
-    /// Two nodes, by index.
-    Inner([u32; 2]),
-    /// A primitive, by index.
-    Leaf(u32),
+/// Subtrees with more primitives than this are built by tasks of their own.
+const TASK_LIMIT: usize = 4096;
+/// In trees with more than [`MAX_SWEPT`] primitives, sets of up to this many are swept exactly.
+const SWEPT_IN_LARGE: usize = 32;
+
+/// Levels of nodes that a tree over `n` primitives needs: the binary logarithm, rounded up.
+fn levels(n: usize) -> usize {
+    n.next_power_of_two().trailing_zeros() as usize
 }
 
-/// Tree with one primitive in a leaf.
-#[derive(Clone, Debug, Default)]
-pub struct BinaryTree {
-    /// Nodes with their bounds; the first is the root, and children come after their parents.
-    pub nodes: Vec<(Bounds, BinaryNode)>,
+/// Whether both sides of a split of a node at this depth can still be halved within [`MAX_DEPTH`].
+/// Halving itself always fits if the node did.
+pub(crate) fn fits(depth: usize, n: usize, n_left: usize) -> bool {
+    depth + levels(n_left.max(n - n_left)) <= MAX_DEPTH
 }
 
-/// A set of primitives to be split, and the slot of the node that it becomes.
-struct Task {
-    node: usize,
-    first: usize,
-    last: usize,
-    depth: usize,
+/// Builds the tree over two records or more, whose root has this index, into `nodes`, one fewer than
+/// there are records.
+pub(crate) fn build(records: Vec<Record>, nodes: &mut [Node<2>], index: u32, progress: &Progress) {
+    let n_swept = if records.len() <= MAX_SWEPT { MAX_SWEPT } else { SWEPT_IN_LARGE };
+    build_swept(records, nodes, index, n_swept, progress);
 }
 
-/// Builds a tree over primitives with these bounds, at most [`MAX_DEPTH`] deep.
-#[must_use]
-pub fn build(bounds: &[Bounds]) -> BinaryTree {
-    let mut tree = BinaryTree::default();
-    if bounds.is_empty() {
-        return tree;
-    }
-    let mut order: Vec<u32> = (0..bounds.len() as u32).collect();
-    let mut scratch = Scratch::default();
-    let unset = (Bounds::EMPTY, BinaryNode::Leaf(0));
-    tree.nodes.reserve(2 * bounds.len());
-    tree.nodes.push(unset);
-    let mut tasks = vec![Task { node: 0, first: 0, last: bounds.len(), depth: 1 }];
-    while let Some(Task { node, first, last, depth }) = tasks.pop() {
-        let set = &mut order[first..last];
-        let total = union_of(bounds, set);
-        if let [prim] = *set {
-            tree.nodes[node] = (total, BinaryNode::Leaf(prim));
-            continue;
+/// [`build`], with sets of up to `n_swept` primitives swept exactly.
+pub(crate) fn build_swept(
+    mut records: Vec<Record>,
+    nodes: &mut [Node<2>],
+    index: u32,
+    n_swept: usize,
+    progress: &Progress,
+) {
+    let is_large = records.len() > PARALLEL_LIMIT;
+    let mut copy = if is_large { records.par_iter().copied().collect() } else { Vec::new() };
+    let place = Place { nodes, index, depth: 1 };
+    Builder { n_swept, progress }.in_tasks(&mut records, &mut copy, place);
+}
+
+struct Builder<'a> {
+    n_swept: usize,
+    progress: &'a Progress<'a>,
+}
+
+impl Builder<'_> {
+    /// Builds a tree, with tasks for its subtrees. Where several threads partition a set, they move it
+    /// to `copy`, which is as large, or empty if there will be none such.
+    fn in_tasks(&self, records: &mut [Record], copy: &mut [Record], mut place: Place) -> Planes {
+        let n = records.len();
+        if n <= TASK_LIMIT {
+            let planes = self.alone(records, place, &mut Sweeper::default());
+            self.progress.add(n);
+            return planes;
         }
-        // Halving needs so many more levels; split for quality only while there are enough left.
-        let levels_if_halved = (set.len() as f64).log2().ceil() as usize + 1;
-        let n_left = if depth + levels_if_halved >= MAX_DEPTH {
-            halve(bounds, set)
-        } else if set.len() <= SWEEP_LIMIT {
-            sweep(bounds, set, &mut scratch)
+        let is_allowed = |n_left| fits(place.depth, n, n_left);
+        let centers = center_bounds(records);
+        let (records, copy, n_left) = if n > PARALLEL_LIMIT {
+            match bins::split_in_parallel(records, copy, &centers, is_allowed) {
+                Some(n_left) => (copy, records, n_left),
+                None => {
+                    let n_left = halve(records, &centers);
+                    (records, copy, n_left)
+                }
+            }
         } else {
-            split_by_bins(bounds, set).unwrap_or_else(|| halve(bounds, set))
+            let n_left = bins::split(records, &centers, is_allowed)
+                .unwrap_or_else(|| halve(records, &centers));
+            (records, copy, n_left)
         };
-        let left = tree.nodes.len();
-        tree.nodes.extend([unset, unset]);
-        tree.nodes[node] = (total, BinaryNode::Inner([left as u32, left as u32 + 1]));
-        tasks.push(Task { node: left + 1, first: first + n_left, last, depth: depth + 1 });
-        tasks.push(Task { node: left, first, last: first + n_left, depth: depth + 1 });
+        let [left_place, right_place] = place.split(n_left);
+        let (left, right) = records.split_at_mut(n_left);
+        let (left_copy, right_copy) = copy.split_at_mut(n_left.min(copy.len()));
+        let (left, right) = rayon::join(
+            || self.child(left, left_copy, left_place),
+            || self.child(right, right_copy, right_place),
+        );
+        let (node, planes) = node_of([left, right]);
+        place.nodes[0] = node;
+        planes
     }
-    tree
-}
 
-fn union_of(bounds: &[Bounds], set: &[u32]) -> Bounds {
-    set.iter().fold(Bounds::EMPTY, |all, &i| all.union(bounds[i as usize]))
-}
-
-fn component(v: Vec3, axis: usize) -> f32 {
-    v.to_array()[axis]
-}
-
-/// Twice the centre: what primitives are ordered by.
-fn center(bounds: &[Bounds], prim: u32, axis: usize) -> f32 {
-    let b = &bounds[prim as usize];
-    component(b.lo, axis) + component(b.hi, axis)
-}
-
-fn sort_by_center(bounds: &[Bounds], set: &mut [u32], axis: usize) {
-    set.sort_unstable_by(|&a, &b| {
-        center(bounds, a, axis).total_cmp(&center(bounds, b, axis)).then(a.cmp(&b))
-    });
-}
-
-/// Splits in the middle of the order along the longest axis.
-fn halve(bounds: &[Bounds], set: &mut [u32]) -> usize {
-    let total = union_of(bounds, set);
-    let size = (total.hi - total.lo).to_array();
-    let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
-    sort_by_center(bounds, set, axis);
-    set.len() / 2
-}
-
-/// Buffers of [`sweep`], kept between calls.
-#[derive(Default)]
-struct Scratch {
-    best_order: Vec<u32>,
-    right_area: Vec<f32>,
-}
-
-/// Tries every split of the order along every axis; leaves the set in the best order.
-fn sweep(bounds: &[Bounds], set: &mut [u32], scratch: &mut Scratch) -> usize {
-    let n = set.len();
-    let mut best = (f32::INFINITY, n / 2);
-    for axis in 0..3 {
-        sort_by_center(bounds, set, axis);
-        scratch.right_area.clear();
-        scratch.right_area.resize(n, 0.0);
-        let mut right = Bounds::EMPTY;
-        for i in (1..n).rev() {
-            right = right.union(bounds[set[i] as usize]);
-            scratch.right_area[i] = right.half_area();
+    fn child<'r>(&self, records: &'r mut [Record], copy: &mut [Record], place: Place) -> Child<'r> {
+        if records.len() == 1 {
+            self.progress.add(1);
+            return Child::Leaf(&records[0]);
         }
-        let mut left = Bounds::EMPTY;
-        let mut improved = false;
-        for i in 1..n {
-            left = left.union(bounds[set[i - 1] as usize]);
-            let cost = left.half_area() * i as f32 + scratch.right_area[i] * (n - i) as f32;
-            if cost < best.0 {
-                best = (cost, i);
-                improved = true;
-            }
-        }
-        if improved || axis == 0 {
-            scratch.best_order.clear();
-            scratch.best_order.extend_from_slice(set);
-        }
+        Child::Inner(place.index, self.in_tasks(records, copy, place))
     }
-    set.copy_from_slice(&scratch.best_order);
-    best.1
+
+    /// Builds a tree on this thread.
+    fn alone(&self, records: &mut [Record], mut place: Place, sweeper: &mut Sweeper) -> Planes {
+        let n = records.len();
+        if n <= self.n_swept {
+            return sweeper.build(records, place);
+        }
+        let centers = center_bounds(records);
+        let is_allowed = |n_left| fits(place.depth, n, n_left);
+        let n_left =
+            bins::split(records, &centers, is_allowed).unwrap_or_else(|| halve(records, &centers));
+        let [left_place, right_place] = place.split(n_left);
+        let (left, right) = records.split_at_mut(n_left);
+        let mut child = |records: &mut [Record], place: Place| {
+            (records.len() > 1)
+                .then(|| Child::Inner(place.index, self.alone(records, place, sweeper)))
+        };
+        let left_node = child(left, left_place);
+        let right_node = child(right, right_place);
+        let (node, planes) = node_of([
+            left_node.unwrap_or(Child::Leaf(&left[0])),
+            right_node.unwrap_or(Child::Leaf(&right[0])),
+        ]);
+        place.nodes[0] = node;
+        planes
+    }
 }
 
-/// Splits between bins of centres; none if all centres coincide.
-fn split_by_bins(bounds: &[Bounds], set: &mut [u32]) -> Option<usize> {
-    let mut lo = [f32::INFINITY; 3];
-    let mut hi = [f32::NEG_INFINITY; 3];
-    for &i in set.iter() {
-        for axis in 0..3 {
-            let c = center(bounds, i, axis);
-            lo[axis] = lo[axis].min(c);
-            hi[axis] = hi[axis].max(c);
-        }
-    }
-    let scale = |axis: usize| N_BINS as f32 / (hi[axis] - lo[axis]);
-    let bin_of = |i: u32, axis: usize| {
-        (((center(bounds, i, axis) - lo[axis]) * scale(axis)) as usize).min(N_BINS - 1)
-    };
-    let mut best: Option<(f32, usize, usize)> = None;
-    for axis in (0..3).filter(|&axis| hi[axis] > lo[axis] && scale(axis).is_finite()) {
-        let mut bins = [(Bounds::EMPTY, 0_usize); N_BINS];
-        for &i in set.iter() {
-            let bin = &mut bins[bin_of(i, axis)];
-            bin.0 = bin.0.union(bounds[i as usize]);
-            bin.1 += 1;
-        }
-        let mut right = [(0.0_f32, 0_usize); N_BINS];
-        let mut all = (Bounds::EMPTY, 0);
-        for i in (1..N_BINS).rev() {
-            all = (all.0.union(bins[i].0), all.1 + bins[i].1);
-            right[i] = (all.0.half_area(), all.1);
-        }
-        let mut left = (Bounds::EMPTY, 0);
-        for i in 1..N_BINS {
-            left = (left.0.union(bins[i - 1].0), left.1 + bins[i - 1].1);
-            if left.1 == 0 || right[i].1 == 0 {
-                continue;
-            }
-            let cost = left.0.half_area() * left.1 as f32 + right[i].0 * right[i].1 as f32;
-            if best.is_none_or(|b| cost < b.0) {
-                best = Some((cost, axis, i));
-            }
-        }
-    }
-    let (_, axis, split) = best?;
-    // Partition in place.
-    let mut n_left = 0;
-    for i in 0..set.len() {
-        if bin_of(set[i], axis) < split {
-            set.swap(i, n_left);
-            n_left += 1;
-        }
-    }
-    Some(n_left)
+/// Moves the first half, by the order along the longest axis of the centres, to the front.
+fn halve(records: &mut [Record], centers: &Planes) -> usize {
+    let axis = centers.longest_axis();
+    let n_left = records.len() / 2;
+    records.select_nth_unstable_by_key(n_left, |record| record.rank(axis));
+    n_left
 }

@@ -1,5 +1,7 @@
 //! Trees hold every primitive once, in boxes that hold it, and are never too deep.
 
+use std::collections::HashMap;
+
 use zrak_core::accel::{MAX_DEPTH, Node};
 use zrak_core::math::{Bounds, Vec3, vec3};
 use zrak_core::scene::{PrimKind, PrimRef};
@@ -8,13 +10,12 @@ use proptest::prelude::*;
 
 use crate::build_trees;
 
+mod layout;
+mod quality;
+
 fn prims(bounds: Vec<Bounds>) -> Vec<(PrimRef, Bounds)> {
     let handle = |i: usize| PrimRef::new(PrimKind::Sphere, i as u32);
     bounds.into_iter().enumerate().map(|(i, bounds)| (handle(i), bounds)).collect()
-}
-
-fn contains(outer: &Bounds, inner: &Bounds) -> bool {
-    outer.union(*inner) == *outer
 }
 
 fn child_bounds<const N: usize>(node: &Node<N>, i: usize) -> Bounds {
@@ -22,43 +23,51 @@ fn child_bounds<const N: usize>(node: &Node<N>, i: usize) -> Bounds {
     Bounds { lo: corner(&node.lo), hi: corner(&node.hi) }
 }
 
-/// Walks a tree and checks what is promised of it; returns its depth.
-fn check_tree<const N: usize>(nodes: &[Node<N>], prims: &[(PrimRef, Bounds)]) -> usize {
-    let mut seen = vec![false; prims.len()];
+/// Walks the tree with this root and checks what is promised of it; returns its depth and the number
+/// of its nodes.
+fn check_tree<const N: usize>(
+    nodes: &[Node<N>],
+    root: u32,
+    prims: &[(PrimRef, Bounds)],
+) -> (usize, usize) {
+    let mut bounds_of: HashMap<PrimRef, Bounds> = prims.iter().copied().collect();
     let mut n_visited = 0;
     let mut depth_max = 0;
     // Node, its depth, and the box that its parent keeps of it.
-    let mut stack = vec![(0_usize, 1_usize, None::<Bounds>)];
+    let mut stack = vec![(root as usize, 1_usize, None::<Bounds>)];
     while let Some((index, depth, outer)) = stack.pop() {
         n_visited += 1;
         depth_max = depth_max.max(depth);
         let node = &nodes[index];
+        let mut all = Bounds::EMPTY;
         for (i, child) in node.children.iter().enumerate() {
+            let bounds = child_bounds(node, i);
             if *child == PrimRef::NONE {
                 // No primitive may hide behind an empty slot, and no ray from nearby meets it.
-                assert!(child_bounds(node, i) == child_bounds(&Node::<N>::EMPTY, i));
+                assert!(bounds == child_bounds(&Node::<N>::EMPTY, i));
                 continue;
             }
-            let bounds = child_bounds(node, i);
-            if let Some(outer) = outer {
-                assert!(contains(&outer, &bounds), "{outer:?} {bounds:?}");
-            }
+            all = all.union(bounds);
             if child.is_node() {
                 let child = child.index() as usize;
                 assert!(child > index, "children come after their parents");
                 stack.push((child, depth + 1, Some(bounds)));
             } else {
-                let prim = child.index() as usize;
-                assert!(!seen[prim], "primitive {prim} twice");
-                seen[prim] = true;
-                assert_eq!((*child, bounds), prims[prim], "a leaf's box is its primitive's");
+                let own = bounds_of.remove(child);
+                assert_eq!(
+                    own,
+                    Some(bounds),
+                    "a leaf's box is its primitive's, and it has one leaf"
+                );
             }
         }
+        if let Some(outer) = outer {
+            assert_eq!(outer, all, "a box is the union of those below");
+        }
     }
-    assert!(seen.iter().all(|&seen| seen), "a primitive is missing");
-    assert_eq!(n_visited, nodes.len(), "a node is not part of the tree");
+    assert!(bounds_of.is_empty(), "a primitive is missing");
     assert!(depth_max <= MAX_DEPTH, "{depth_max}");
-    depth_max
+    (depth_max, n_visited)
 }
 
 /// Depths of both trees.
@@ -66,8 +75,11 @@ fn check(bounds: Vec<Bounds>) -> [usize; 2] {
     let prims = prims(bounds);
     let trees = build_trees(&prims);
     let n = prims.len();
-    assert!(trees.nodes2.len() <= n.max(1) && trees.nodes8.len() <= n.max(1));
-    [check_tree(&trees.nodes2, &prims), check_tree(&trees.nodes8, &prims)]
+    assert_eq!(trees.nodes2.len(), n.saturating_sub(1).max(1));
+    let (depth2, n2) = check_tree(&trees.nodes2, 0, &prims);
+    let (depth8, n8) = check_tree(&trees.nodes8, 0, &prims);
+    assert_eq!([n2, n8], [trees.nodes2.len(), trees.nodes8.len()], "all nodes are in the tree");
+    [depth2, depth8]
 }
 
 fn at(p: Vec3, r: f32) -> Bounds {
@@ -96,8 +108,8 @@ fn few_and_none() {
 fn all_in_one_place() {
     for n in [2, 9, 100, 5000] {
         let depths = check(vec![at(vec3(3.0, -1.0, 2.0), 0.5); n]);
-        // Halved, or nearly.
-        assert!(depths[0] < MAX_DEPTH);
+        // Halved all the way.
+        assert_eq!(depths[0], (n - 1).ilog2() as usize + 1);
         // The same centre, with other sizes.
         check((0..n).map(|i| at(Vec3::ZERO, 1.0 + i as f32)).collect());
         // Flat, and points.
@@ -138,6 +150,37 @@ fn a_hundred_thousand() {
             .map(|i| at(vec3(if i % 2 == 0 { 0.0 } else { 1e9 }, unit(i / 10, 0), 0.0), 1e-3))
             .collect(),
     );
+}
+
+#[test]
+fn infinite_boxes() {
+    let (inf, max) = (f32::INFINITY, f32::MAX);
+    let extremes = [
+        [-inf, inf],
+        [0.0, inf],
+        [-inf, 0.0],
+        [-max, max],
+        [max, max],
+        [-max, -max],
+        [max, inf],
+        [0.0, 0.0],
+        [-0.0, 0.0],
+        [1e-45, 1e-44],
+    ];
+    let side = |i: u32| extremes[i as usize % extremes.len()];
+    let odd = |i: u32| {
+        let [x, y, z] = [side(i), side(i / 10), side(i / 100)];
+        Bounds { lo: vec3(x[0], y[0], z[0]), hi: vec3(x[1], y[1], z[1]) }
+    };
+    // Alone, and among boxes of usual size, in sets that are swept, binned, and binned in parallel.
+    for n in [1000, 5000, 70_000] {
+        check((0..1000).map(odd).collect());
+        let usual = |i: u32| at(vec3(unit(i, 0), unit(i, 1), unit(i, 2)), 0.01);
+        let bounds = (0..n).map(|i| if i % 7 == 0 { odd(i) } else { usual(i) }).collect();
+        check(bounds);
+        let one = (0..n).map(|i| if i == n / 2 { odd(0) } else { usual(i) }).collect();
+        check(one);
+    }
 }
 
 #[test]
