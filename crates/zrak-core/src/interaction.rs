@@ -100,6 +100,7 @@ impl SurfaceInteraction {
             p: self.p,
             uv: self.uv,
             duv: [share(self.dpdu), share(self.dpdv)],
+            footprint: self.footprint,
             color: self.color,
             alpha: self.alpha,
         }

@@ -10,6 +10,7 @@ use bytemuck::{Pod, Zeroable};
 use crate::accessor::Array;
 use crate::camera::Camera;
 use crate::math::{Color, Vec3, lerp};
+use crate::textures::TextureArrays;
 
 /// Calls the macro with the name and the record type of every array of the arena. This is the only list.
 #[macro_export]
@@ -94,6 +95,18 @@ macro_rules! for_each_scene_array {
             noises: $crate::textures::Noise,
             /// Images.
             images: $crate::textures::ImageTexture,
+            /// Images with all that can be said about them.
+            image_maps: $crate::textures::ImageMap,
+            /// Mappings of surfaces to (u, v), and maps of space.
+            mappings: $crate::textures::TextureMapping,
+            /// Fractal patterns.
+            fractals: $crate::textures::Fractal,
+            /// Textures made of textures.
+            programs: $crate::textures::Program,
+            /// What they are made of.
+            texture_ops: $crate::textures::TextureOp,
+            /// Pictures of the whole sphere of directions; the background is the first.
+            environments: $crate::lights::Environment,
             /// Texels of the images.
             texels: u32,
             /// Linear value of each 8-bit sRGB code.
@@ -125,6 +138,8 @@ pub enum Feature {
     Lights = 0,
     /// Media that surfaces bound.
     Media = 1,
+    /// A picture for a background.
+    Environment = 2,
     /// Not something that a scene has, but a kernel: so much code that looking up a texture is a call.
     /// A call costs registers; a copy of its code at each of many places costs more.
     TextureCalls = 31,
@@ -245,16 +260,31 @@ impl SceneView<'_> {
             (self.checkers.is_empty(), TextureKind::Checker),
             (self.noises.is_empty(), TextureKind::Noise),
             (self.images.is_empty(), TextureKind::Image),
+            (self.programs.is_empty(), TextureKind::Program),
         ];
         let features = [
             (self.lights.is_empty(), Feature::Lights),
             (self.homogeneous_media.is_empty(), Feature::Media),
+            (self.environments.is_empty(), Feature::Environment),
         ];
         Kinds {
             features: features.iter().map(|k| bit(k.0, k.1 as u32)).sum(),
             prims: prims.iter().map(|k| bit(k.0, k.1 as u32)).sum(),
             materials: materials.iter().map(|k| bit(k.0, k.1 as u32)).sum(),
             textures: textures.iter().map(|k| bit(k.0, k.1 as u32)).sum(),
+        }
+    }
+}
+
+impl SceneView<'_> {
+    /// Radiance that comes from beyond the scene along the unit direction `d`.
+    #[inline(always)]
+    #[must_use]
+    pub fn radiance_from_beyond(&self, d: Vec3) -> Color {
+        if self.kinds.has_feature(Feature::Environment) && !self.environments.is_empty() {
+            self.environments.get(0).radiance(&TextureArrays::of(self), d)
+        } else {
+            self.globals.background.radiance(d)
         }
     }
 }
@@ -480,5 +510,7 @@ tagged_handle! {
         Noise = 2,
         /// [`crate::textures::ImageTexture`].
         Image = 3,
+        /// [`crate::textures::Program`].
+        Program = 4,
     }
 }

@@ -31,4 +31,4 @@ pub use error::{Error, ErrorKind};
 pub use format::Format;
 pub use metadata::Metadata;
 pub use picture::Picture;
-pub use srgb::{linear_to_srgb8, srgb8_to_linear_table};
+pub use srgb::{linear_to_srgb8, srgb8_to_linear_table, srgb16_to_linear};

@@ -21,8 +21,9 @@ pub fn linear_to_srgb8(linear: f32) -> u8 {
     ENCODER.encode(linear)
 }
 
-/// Linear values of the 65,536 codes of a 16-bit sRGB image.
-pub(crate) fn srgb16_to_linear(code: u16) -> f32 {
+/// Linear value of a code of a 16-bit sRGB image.
+#[must_use]
+pub fn srgb16_to_linear(code: u16) -> f32 {
     static TABLE: LazyLock<Vec<f32>> = LazyLock::new(|| {
         (0..=u16::MAX).map(|code| decode(f64::from(code) / 65535.0) as f32).collect()
     });

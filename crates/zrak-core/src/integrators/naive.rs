@@ -137,7 +137,7 @@ impl Path {
                     return self.resume();
                 }
                 // Left the scene.
-                self.radiance += self.throughput * scene.globals.background.radiance(d);
+                self.radiance += self.throughput * scene.radiance_from_beyond(d);
                 return false;
             };
             if !to_light {
@@ -157,7 +157,8 @@ impl Path {
                     return self.resume();
                 }
                 let mut surface = surface_interaction(scene, &hit, &self.ray);
-                if kinds.has_texture(TextureKind::Image) {
+                if kinds.has_texture(TextureKind::Image) || kinds.has_texture(TextureKind::Program)
+                {
                     surface.footprint = scene.globals.camera.spread * self.length;
                 }
                 let resolved = resolve(scene, &mut surface, d, &sampler);

@@ -4,6 +4,10 @@
 //! 1. Add a kind and what it needs to [`Light`], and an arm to [`Light::sample`], with a test.
 //! 2. On the host: describe it (`zrak-scene`, `desc/lights.rs`), validate it, lower it.
 
+mod environment;
+
+pub use environment::{ENVIRONMENT_EQUAL_AREA, ENVIRONMENT_EQUIRECT, Environment};
+
 use bytemuck::{Pod, Zeroable};
 
 use crate::math::{Color, Vec3, dot, max, min, sqrt};

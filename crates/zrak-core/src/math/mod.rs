@@ -23,4 +23,7 @@ pub use scalar::{
 };
 pub use trig::{atan2, ln, sin, sin_cos_turns};
 pub use vec3::{Vec3, cross, dot, vec3};
-pub use warp::{equal_area_square_to_sphere, square_to_uniform_disk, square_to_uniform_sphere};
+pub use warp::{
+    equal_area_sphere_to_square, equal_area_square_to_sphere, square_to_uniform_disk,
+    square_to_uniform_sphere,
+};

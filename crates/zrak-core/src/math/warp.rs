@@ -4,7 +4,7 @@
 //! test in `tests.rs`.
 
 use super::scalar::{abs, max, sqrt};
-use super::trig::sin_cos_turns;
+use super::trig::{atan2, sin_cos_turns};
 use super::vec3::{Vec3, vec3};
 
 /// Uniform direction on the unit sphere (density 1 / (4 pi) per steradian): cylinder projection.
@@ -35,6 +35,22 @@ pub fn equal_area_square_to_sphere(x: f32, y: f32) -> Vec3 {
     let z = if signed_distance < 0.0 { -height } else { height };
     let reach = r * sqrt(max(0.0, 2.0 - r * r));
     vec3(if u < 0.0 { -c } else { c } * reach, if v < 0.0 { -s } else { s } * reach, z)
+}
+
+/// Point of the unit square that [`equal_area_square_to_sphere`] takes to the unit direction `d`.
+#[inline(always)]
+#[must_use]
+pub fn equal_area_sphere_to_square(d: Vec3) -> (f32, f32) {
+    let (x, y, z) = (abs(d.x), abs(d.y), abs(d.z));
+    let r = sqrt(max(0.0, 1.0 - z));
+    // Place along the side of the square of radius r, from 0 to 1.
+    let along = atan2(y, x) * core::f32::consts::FRAC_2_PI;
+    let (mut u, mut v) = (r * (1.0 - along), r * along);
+    if d.z < 0.0 {
+        (u, v) = (1.0 - v, 1.0 - u);
+    }
+    let signed = |x: f32, sign: f32| if sign < 0.0 { -x } else { x };
+    (0.5 * (1.0 + signed(u, d.x)), 0.5 * (1.0 + signed(v, d.y)))
 }
 
 /// Uniform point in the unit disk (density 1 / pi per area), as (x, y): polar coordinates.

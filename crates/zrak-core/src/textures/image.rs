@@ -5,10 +5,15 @@ use bytemuck::{Pod, Zeroable};
 use super::TextureArrays;
 use crate::math::{Color, floor, max, min};
 
-/// Texels are one word: red, green, blue as 8-bit sRGB codes, red in the lowest bits.
+/// Texels are one word: red, green, blue as 8-bit sRGB codes, red in the lowest bits, and alpha as a share
+/// of 255.
 pub const TEXELS_SRGB8: u32 = 0;
 /// Texels are three words: linear red, green, blue as bits of `f32`.
 pub const TEXELS_LINEAR: u32 = 1;
+/// Texels are one word: red, green, blue, alpha as shares of 255, red in the lowest bits.
+pub const TEXELS_UNORM8: u32 = 2;
+/// Texels are two words: red, green, blue, alpha as shares of 65535, red in the lowest bits of the first.
+pub const TEXELS_UNORM16: u32 = 3;
 
 /// Image that covers [0, 1] x [0, 1], v upwards; it repeats in u and ends in v.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -21,7 +26,8 @@ pub struct ImageTexture {
     pub width: u32,
     /// Height in texels.
     pub height: u32,
-    /// [`TEXELS_SRGB8`] or [`TEXELS_LINEAR`].
+    /// [`TEXELS_SRGB8`] or [`TEXELS_LINEAR`]; in an [`ImageMap`](super::ImageMap) also [`TEXELS_UNORM8`] or
+    /// [`TEXELS_UNORM16`].
     pub format: u32,
     /// 1 for the weighted mean of four texels, 0 for the nearest one.
     pub bilinear: u32,

@@ -2,4 +2,6 @@
 
 mod checker;
 mod image;
+mod image_map;
 mod noise;
+mod program;

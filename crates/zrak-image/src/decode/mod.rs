@@ -25,6 +25,9 @@ pub enum Texels {
     /// 8-bit PNG or a JPEG holds. [`srgb8_to_linear_table`](crate::srgb8_to_linear_table) makes
     /// the codes linear.
     Srgb8(Vec<[u8; 4]>),
+    /// The same with 16 bits a channel: what a 16-bit PNG holds. [`srgb16_to_linear`](crate::srgb16_to_linear)
+    /// makes the codes linear.
+    Srgb16(Vec<[u16; 4]>),
     /// Linear sRGB, finite and not negative: what the other files hold. Alpha is dropped.
     Linear(Vec<[f32; 3]>),
 }
@@ -98,6 +101,9 @@ pub fn read_picture(path: &Path) -> Result<Picture, Error> {
     let TextureImage { width, height, texels } = read(path, &Limits::PICTURE)?;
     let pixels = match texels {
         Texels::Linear(pixels) => pixels,
+        Texels::Srgb16(texels) => {
+            texels.iter().map(|&[r, g, b, _]| [r, g, b].map(srgb::srgb16_to_linear)).collect()
+        }
         Texels::Srgb8(texels) => {
             let table = srgb::srgb8_to_linear_table();
             texels.iter().map(|&[r, g, b, _]| [r, g, b].map(|v| table[usize::from(v)])).collect()

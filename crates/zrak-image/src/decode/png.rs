@@ -1,4 +1,4 @@
-//! PNG: every colour type and depth. Up to 8 bits stay sRGB codes, 16 bits become linear.
+//! PNG: every colour type and depth. Up to 8 bits become 8-bit codes, 16 bits stay.
 
 use std::io::Cursor;
 
@@ -6,7 +6,6 @@ use png::{BitDepth, ColorType, Decoder, DecodingError, Limits as PngLimits, Tran
 
 use super::{Limits, Texels, TextureImage};
 use crate::error::Fault;
-use crate::srgb;
 
 /// Room for the decoder's own needs: text chunks, a palette, a few rows.
 const WORKING_BYTES: usize = 64 << 20;
@@ -21,7 +20,7 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<TextureImage, Faul
     let header = decoder.read_header_info().map_err(fault)?;
     let (width, height) = (header.width, header.height);
     let is_deep = header.bit_depth == BitDepth::Sixteen;
-    let bytes_per_texel = if is_deep { 12 } else { 4 };
+    let bytes_per_texel = if is_deep { 8 } else { 4 };
     let n_texels = limits.check(width.into(), height.into(), bytes_per_texel)?;
 
     let mut reader = decoder.read_info().map_err(fault)?;
@@ -39,15 +38,20 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<TextureImage, Faul
     reader.finish().map_err(fault)?;
 
     let texels = if is_deep {
-        let linear = |texel: &[u8], channel: usize| {
-            srgb::srgb16_to_linear(u16::from_be_bytes([texel[2 * channel], texel[2 * channel + 1]]))
+        let code = |texel: &[u8], channel: usize| {
+            u16::from_be_bytes([texel[2 * channel], texel[2 * channel + 1]])
         };
-        Texels::Linear(
+        Texels::Srgb16(
             samples
                 .chunks_exact(2 * n_channels)
-                .map(|texel| match n_channels {
-                    1 | 2 => [linear(texel, 0); 3],
-                    _ => [linear(texel, 0), linear(texel, 1), linear(texel, 2)],
+                .map(|texel| {
+                    let c = |channel| code(texel, channel);
+                    match n_channels {
+                        1 => [c(0), c(0), c(0), u16::MAX],
+                        2 => [c(0), c(0), c(0), c(1)],
+                        3 => [c(0), c(1), c(2), u16::MAX],
+                        _ => [c(0), c(1), c(2), c(3)],
+                    }
                 })
                 .collect(),
         )

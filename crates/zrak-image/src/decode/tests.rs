@@ -168,13 +168,13 @@ fn png_of_every_colour_type_becomes_a_texture() {
             ColorType::Grayscale,
             BitDepth::Sixteen,
             &[0xff, 0xff, 0, 0],
-            Texels::Linear(vec![[1.0; 3], [0.0; 3]]),
+            Texels::Srgb16(vec![[0xffff; 4], [0, 0, 0, 0xffff]]),
         ),
         (
             ColorType::Rgba,
             BitDepth::Sixteen,
             &[0xff, 0xff, 0, 0, 0x80, 0x80, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1],
-            Texels::Linear(vec![[1.0, 0.0, srgb::srgb8_to_linear_table()[128]], [0.0; 3]]),
+            Texels::Srgb16(vec![[0xffff, 0, 0x8080, 0], [0, 0, 0, 0x0101]]),
         ),
     ];
     for (color, depth, row, expected) in cases {

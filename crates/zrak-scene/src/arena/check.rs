@@ -8,7 +8,10 @@ use zrak_core::scene::{
     MaterialKind, MaterialRef, PrimKind, PrimRef, SceneView, TextureKind, TextureRef,
 };
 use zrak_core::shapes::{Instance, MESH_COLORS, MESH_NORMALS, MESH_TANGENTS, MESH_UVS, NO_MOTION};
-use zrak_core::textures::{TEXELS_LINEAR, TEXELS_SRGB8};
+use zrak_core::textures::{
+    ImageTexture, MAX_LEVELS, N_OPS, NO_MAPPING, OP_FRACTAL, OP_IMAGE, OP_NOISE, TEXELS_LINEAR,
+    TEXELS_SRGB8, TEXELS_UNORM16, words_per_texel,
+};
 
 /// What is wrong with an arena.
 #[derive(Debug, thiserror::Error)]
@@ -101,19 +104,75 @@ pub(super) fn check(scene: &SceneView) -> Check {
         }
     }
     for image in records(&scene.images) {
-        let words_per_texel = match image.format {
-            TEXELS_SRGB8 => 1,
-            TEXELS_LINEAR => 3,
-            other => return Err(Corrupt::new(format!("texels of format {other}"))),
+        require(matches!(image.format, TEXELS_SRGB8 | TEXELS_LINEAR), || {
+            format!("texels of format {} in a plain image", image.format)
+        })?;
+        check_raster(scene, &image, 1)?;
+    }
+    check_programs(scene)
+}
+
+/// Checks that the levels of an image lie within the texels.
+fn check_raster(scene: &SceneView, image: &ImageTexture, n_levels: u32) -> Check {
+    require(image.format <= TEXELS_UNORM16, || format!("texels of format {}", image.format))?;
+    require(image.width > 0 && image.height > 0, || "an image without texels".into())?;
+    require((1..=MAX_LEVELS).contains(&n_levels), || format!("an image of {n_levels} levels"))?;
+    let words_per_texel = u64::from(words_per_texel(image.format));
+    let (mut width, mut height) = (u64::from(image.width), u64::from(image.height));
+    let mut end = u64::from(image.first_word);
+    for _ in 0..n_levels {
+        end = end.saturating_add((width * height).saturating_mul(words_per_texel));
+        (width, height) = ((width / 2).max(1), (height / 2).max(1));
+    }
+    require(end <= u64::from(scene.texels.len()), || {
+        "an image that ends beyond the texels".into()
+    })?;
+    // Texels are counted in 32-bit signed numbers.
+    require(image.width < 1 << 24 && image.height < 1 << 24, || "an image with long sides".into())?;
+    require(image.format != TEXELS_SRGB8 || scene.srgb_table.len() == 256, || {
+        "8-bit texels without the table that decodes them".into()
+    })
+}
+
+/// Checks the textures made of textures, and what they are made of.
+fn check_programs(scene: &SceneView) -> Check {
+    let mapped = |mapping: u32| {
+        require(mapping == NO_MAPPING || mapping < scene.mappings.len(), || {
+            format!("no mapping {mapping}")
+        })
+    };
+    for map in records(&scene.image_maps) {
+        check_raster(scene, &map.raster, map.n_levels)?;
+        mapped(map.mapping)?;
+    }
+    for environment in records(&scene.environments) {
+        require(environment.image < scene.image_maps.len(), || {
+            format!("an environment with image {}", environment.image)
+        })?;
+    }
+    for program in records(&scene.programs) {
+        let end = u64::from(program.first_op) + u64::from(program.n_ops);
+        require(program.n_ops > 0 && end <= u64::from(scene.texture_ops.len()), || {
+            "a texture whose operations are not there".into()
+        })?;
+    }
+    for op in records(&scene.texture_ops) {
+        require(op.op < N_OPS, || format!("no texture operation {}", op.op))?;
+        mapped(op.mapping)?;
+        let len = match op.op {
+            OP_NOISE => scene.noises.len(),
+            OP_FRACTAL => scene.fractals.len(),
+            OP_IMAGE => scene.image_maps.len(),
+            _ => continue,
         };
-        let n_words = u64::from(image.width) * u64::from(image.height) * words_per_texel;
-        require(image.width > 0 && image.height > 0, || "an image without texels".into())?;
-        require(u64::from(image.first_word) + n_words <= u64::from(scene.texels.len()), || {
-            "an image that ends beyond the texels".into()
-        })?;
-        require(image.format != TEXELS_SRGB8 || scene.srgb_table.len() == 256, || {
-            "8-bit texels without the table that decodes them".into()
-        })?;
+        require(op.index < len, || format!("a texture operation with record {}", op.index))?;
+    }
+    // Octaves are loops.
+    for octaves in records(&scene.noises)
+        .map(|noise| noise.octaves)
+        .chain(records(&scene.fractals).map(|fractal| fractal.octaves))
+    {
+        require(octaves <= 64, || format!("noise of {octaves} octaves"))?;
     }
     Ok(())
 }
@@ -166,6 +225,7 @@ fn check_texture(scene: &SceneView, texture: TextureRef) -> Check {
         Some(TextureKind::Checker) => scene.checkers.len(),
         Some(TextureKind::Noise) => scene.noises.len(),
         Some(TextureKind::Image) => scene.images.len(),
+        Some(TextureKind::Program) => scene.programs.len(),
         None => 0,
     };
     require(texture.index() < len, || format!("no texture {:#x}", texture.0))

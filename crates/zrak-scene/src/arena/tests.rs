@@ -13,8 +13,8 @@ use zrak_core::shapes::{
     MeshTriangle, Motion, MovingSphere, Placement, Quad, Sphere, Triangle,
 };
 use zrak_core::textures::{
-    Checker, ColorInput, ImageTexture, Noise, PATTERN_NOISE, ScalarInput, TEXELS_LINEAR,
-    TEXELS_SRGB8,
+    Checker, ColorInput, ImageMap, ImageTexture, N_OPS, Noise, OP_FRACTAL, OP_IMAGE, OP_NOISE,
+    PATTERN_NOISE, Program, ScalarInput, TEXELS_LINEAR, TEXELS_SRGB8, TEXELS_UNORM16, TextureOp,
 };
 
 use super::{ARENA_ALIGNMENT, SceneArena, SceneArrays};
@@ -83,6 +83,15 @@ fn good() -> SceneArrays {
         bilinear: 1,
         _pad: [0; 3],
     });
+    // 3x2 texels, 1x1, from the first word on.
+    let raster = ImageTexture { first_word: 0, ..a.images[0] };
+    a.image_maps.push(ImageMap { raster, n_levels: 2, mapping: 0, ..bytemuck::Zeroable::zeroed() });
+    a.mappings.push(bytemuck::Zeroable::zeroed());
+    a.fractals.push(bytemuck::Zeroable::zeroed());
+    a.programs.push(Program { first_op: 0, n_ops: 3 });
+    let op = |op| TextureOp { op, ..bytemuck::Zeroable::zeroed() };
+    a.texture_ops.extend([op(OP_NOISE), op(OP_FRACTAL), op(OP_IMAGE)]);
+    a.environments.push(bytemuck::Zeroable::zeroed());
     a.texels = (0..7).collect();
     a.srgb_table = (0..256).map(|i| i as f32).collect();
     let center = Vec3::splat(1.0);
@@ -242,6 +251,23 @@ fn textures_out_of_range_are_refused() {
 }
 
 #[test]
+fn programs_that_lead_astray_are_refused() {
+    let program = input(TextureKind::Program, 1);
+    refused("no texture", |a| a.lambertians[0].albedo = program);
+    refused("operations are not there", |a| a.programs[0].n_ops = 4);
+    refused("operations are not there", |a| a.programs[0].n_ops = 0);
+    refused("operations are not there", |a| a.programs[0].first_op = u32::MAX);
+    refused("no texture operation", |a| a.texture_ops[0].op = N_OPS);
+    for i in 0..3 {
+        refused("with record", |a| a.texture_ops[i].index = 1);
+        refused("no mapping", |a| a.texture_ops[i].mapping = 1);
+    }
+    refused("octaves", |a| a.fractals[0].octaves = u32::MAX);
+    refused("octaves", |a| a.noises[0].octaves = u32::MAX);
+    refused("an environment with image", |a| a.environments[0].image = 1);
+}
+
+#[test]
 fn checkers_that_lead_in_circles_are_refused() {
     refused("refers to a later one", |a| a.checkers[0].even = input(TextureKind::Checker, 1));
     refused("refers to a later one", |a| a.checkers[0].odd = input(TextureKind::Checker, 0));
@@ -258,6 +284,13 @@ fn images_beyond_the_texels_are_refused() {
     refused("without texels", |a| a.images[0].width = 0);
     refused("without texels", |a| a.images[0].height = 0);
     refused("format", |a| a.images[0].format = 2);
+    refused("format", |a| a.image_maps[0].raster.format = 4);
+    refused("beyond the texels", |a| a.image_maps[0].raster.first_word = 1);
+    refused("beyond the texels", |a| a.image_maps[0].n_levels = 3);
+    refused("beyond the texels", |a| a.image_maps[0].raster.format = TEXELS_UNORM16);
+    refused("levels", |a| a.image_maps[0].n_levels = 0);
+    refused("levels", |a| a.image_maps[0].n_levels = u32::MAX);
+    refused("no mapping", |a| a.image_maps[0].mapping = 1);
     refused("without the table", |a| a.srgb_table.truncate(255));
 }
 

@@ -24,7 +24,8 @@ pub(super) fn lower(desc: &SceneDesc, arrays: &mut SceneArrays) {
         .collect();
 }
 
-fn light(desc: &LightDesc) -> Light {
+/// A light.
+pub(super) fn light(desc: &LightDesc) -> Light {
     let none = Light {
         position: Vec3::ZERO,
         kind: LIGHT_POINT,

@@ -5,19 +5,24 @@
 
 mod assets;
 mod camera;
+mod environment;
 mod lights;
 mod meshes;
 mod objects;
+mod sky;
 mod surfaces;
+mod textures;
 mod transform;
 
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use rayon::prelude::*;
 use zrak_accel::Trees;
-use zrak_core::accel::Node;
 use zrak_core::math::Bounds;
 use zrak_core::scene::{Background, Globals, PrimKind, PrimRef};
 use zrak_core::shapes::primitive_bounds;
@@ -26,23 +31,35 @@ use crate::arena::{SceneArena, SceneArrays};
 use crate::desc::{BackgroundDesc, SceneDesc, Triple};
 use crate::validate::{KeyPath, Problem};
 
-pub use assets::Assets;
+pub use assets::{Assets, MissingTextures, stays_inside};
 pub use transform::Transform;
 
-/// Where the files are that a scene refers to, and how large they may be.
+/// Where the files are that a scene refers to, which may be read, and how large they may be.
 #[derive(Clone, Debug)]
 pub struct LowerOptions {
     /// Folder that relative paths start from.
     pub base_dir: PathBuf,
     /// Limits of images.
     pub image_limits: zrak_image::Limits,
+    /// Whether files outside of the folder may be read.
+    pub allow_external: bool,
+    /// Pictures inside the scene's file: the path `embedded:NAME` means entry `NAME`.
+    pub embedded: Arc<BTreeMap<String, Vec<u8>>>,
+    /// What becomes of textures whose image cannot be read.
+    pub missing_textures: MissingTextures,
 }
 
 impl LowerOptions {
     /// Options for a scene whose paths are relative to `base_dir`.
     #[must_use]
     pub fn new(base_dir: impl AsRef<Path>) -> Self {
-        Self { base_dir: base_dir.as_ref().to_owned(), image_limits: zrak_image::Limits::default() }
+        Self {
+            base_dir: base_dir.as_ref().to_owned(),
+            image_limits: zrak_image::Limits::default(),
+            allow_external: false,
+            embedded: Arc::default(),
+            missing_textures: MissingTextures::default(),
+        }
     }
 }
 
@@ -51,45 +68,77 @@ impl LowerOptions {
 /// # Errors
 /// The problems that [`crate::validate::validate`] finds, or those of the files it refers to.
 pub fn lower(desc: &SceneDesc, options: &LowerOptions) -> Result<SceneArena, Vec<Problem>> {
+    lower_with_warnings(desc, options).map(|(arena, _)| arena)
+}
+
+/// [`lower`], and what had to be left out or replaced.
+///
+/// # Errors
+/// As for [`lower`].
+pub fn lower_with_warnings(
+    desc: &SceneDesc,
+    options: &LowerOptions,
+) -> Result<(SceneArena, Vec<Problem>), Vec<Problem>> {
     let problems = crate::validate::validate(desc);
     if !problems.is_empty() {
         return Err(problems);
     }
+    let mut warnings = Vec::new();
     let mut arrays = SceneArrays::default();
-    let materials = surfaces::lower(desc, options, &mut arrays)?;
+    let mut textures = textures::Textures::new(desc);
+    let materials = surfaces::lower(desc, &mut textures, &mut arrays);
     lights::lower(desc, &mut arrays);
+    environment::lower(&desc.background, &mut textures, &mut arrays);
+    textures.read_images(options, &mut arrays, &mut warnings)?;
     let mut meshes = meshes::Meshes::new(desc, options);
     let objects = objects::lower(desc, &materials, &mut meshes, &mut arrays)?;
     drop(meshes);
     let globals = globals(desc);
-    build(objects, globals, &mut arrays);
-    SceneArena::pack(globals, &arrays).map_err(|corrupt| {
-        vec![Problem { path: KeyPath::default(), message: corrupt.to_string(), help: None }]
-    })
+    let whole = |message: String| Problem { path: KeyPath::default(), message, help: None };
+    build(objects, globals, &mut arrays).map_err(|message| vec![whole(message)])?;
+    match SceneArena::pack(globals, &arrays) {
+        Ok(arena) => Ok((arena, warnings)),
+        Err(corrupt) => Err(vec![whole(corrupt.to_string())]),
+    }
 }
 
 /// Builds the trees: first those that instances place, then that of the world, whose boxes hold them.
-fn build(objects: objects::LoweredObjects, globals: Globals, arrays: &mut SceneArrays) {
+fn build(
+    objects: objects::LoweredObjects,
+    globals: Globals,
+    arrays: &mut SceneArrays,
+) -> Result<(), String> {
     let shutter = [globals.camera.shutter_open_s, globals.camera.shutter_close_s];
     let bounded = |arrays: &SceneArrays, prims: Vec<PrimRef>| -> Vec<(PrimRef, Bounds)> {
         let view = arrays.view(globals);
-        prims.into_iter().map(|prim| (prim, primitive_bounds(&view, prim, shutter))).collect()
+        prims.into_par_iter().map(|prim| (prim, primitive_bounds(&view, prim, shutter))).collect()
     };
-    // The world's root comes first.
-    let mut trees = Trees { nodes2: vec![Node::EMPTY], nodes8: vec![Node::EMPTY] };
-    let roots: Vec<[u32; 2]> =
-        objects.sets.into_iter().map(|prims| trees.append(&bounded(arrays, prims))).collect();
+    let room = |trees: &Trees, prims: &[PrimRef]| {
+        let message = "the scene has more primitives than trees have nodes for: 2^28";
+        if trees.has_room_for(prims.len()) { Ok(()) } else { Err(message.to_owned()) }
+    };
+    let mut trees = Trees::new();
+    let mut roots = Vec::with_capacity(objects.sets.len());
+    for prims in objects.sets {
+        room(&trees, &prims)?;
+        roots.push(trees.append(bounded(arrays, prims)));
+    }
     for (instance, &set) in arrays.instances.iter_mut().zip(&objects.set_of_instance) {
         [instance.root2, instance.root8] = roots[set as usize];
     }
-    arrays.nodes2 = std::mem::take(&mut trees.nodes2);
     let mut prims = objects.world;
     prims.extend((0..arrays.instances.len()).map(|i| PrimRef::new(PrimKind::Instance, i as u32)));
+    room(&trees, &prims)?;
+    // The boxes of instances are those of the roots of their trees.
+    (arrays.nodes2, arrays.nodes8) = (trees.nodes2, trees.nodes8);
     let world = bounded(arrays, prims);
-    trees.nodes2 = std::mem::take(&mut arrays.nodes2);
-    trees.set_root(&world);
-    arrays.nodes2 = trees.nodes2;
-    arrays.nodes8 = trees.nodes8;
+    trees = Trees {
+        nodes2: std::mem::take(&mut arrays.nodes2),
+        nodes8: std::mem::take(&mut arrays.nodes8),
+    };
+    trees.set_root(world);
+    (arrays.nodes2, arrays.nodes8) = (trees.nodes2, trees.nodes8);
+    Ok(())
 }
 
 fn globals(desc: &SceneDesc) -> Globals {
@@ -99,7 +148,10 @@ fn globals(desc: &SceneDesc) -> Globals {
         BackgroundDesc::Gradient { bottom, top } => {
             Background { bottom: color(*bottom), top: color(*top) }
         }
-        _ => Background { bottom: color([0.0; 3]), top: color([0.0; 3]) },
+        // The environment's picture is what is seen.
+        BackgroundDesc::Image { .. } | BackgroundDesc::Sky { .. } => {
+            Background { bottom: color([0.0; 3]), top: color([0.0; 3]) }
+        }
     };
     Globals {
         camera: camera::lower(&desc.camera),

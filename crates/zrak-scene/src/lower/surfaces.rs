@@ -1,4 +1,4 @@
-//! Textures and materials.
+//! Materials.
 
 mod principled;
 
@@ -12,21 +12,15 @@ use zrak_core::materials::{
     SURFACE_MEDIUM, SURFACE_NORMAL_MAP, SURFACE_ONE_SIDED, Surface, ThinDielectric,
 };
 use zrak_core::math::Color;
-use zrak_core::scene::{MaterialKind, MaterialRef, TextureKind, TextureRef};
-use zrak_core::textures::{
-    Checker, ColorInput, ImageTexture, Noise, PATTERN_MARBLE, PATTERN_NOISE, PATTERN_TURBULENCE,
-    ScalarInput, TEXELS_LINEAR, TEXELS_SRGB8,
-};
-use zrak_image::{Texels, TextureImage};
+use zrak_core::scene::{MaterialKind, MaterialRef};
+use zrak_core::textures::ScalarInput;
 
-use super::{LowerOptions, assets};
+use super::textures::{LoweredInput, Textures};
 use crate::arena::SceneArrays;
 use crate::desc::{
-    CoatDesc, ColorDesc, ConductorDesc, FresnelDesc, ImageFilter, LightSides, MaterialDesc,
-    MediumInterfaceDesc, NoisePattern, RoughnessDesc, RoughnessMap, ScalarDesc, SceneDesc,
-    TextureDesc, Triple,
+    CoatDesc, ColorDesc, ConductorDesc, FresnelDesc, LightSides, MaterialDesc, MediumInterfaceDesc,
+    RoughnessDesc, RoughnessMap, ScalarDesc, SceneDesc, Triple,
 };
-use crate::validate::{KeyPath, Problem};
 
 /// A material, and what shapes must know of it.
 #[derive(Clone, Copy, Debug)]
@@ -42,157 +36,37 @@ pub(super) fn medium_index(desc: &SceneDesc, name: Option<&str>) -> u32 {
         .map_or(zrak_core::media::VACUUM, |i| i as u32)
 }
 
-/// A colour input, and whether it looks at texture coordinates.
-#[derive(Clone, Copy)]
-struct LoweredInput {
-    input: ColorInput,
-    needs_uv: bool,
-}
-
 struct Lowering<'a, 'b> {
     desc: &'a SceneDesc,
-    options: &'b LowerOptions,
     arrays: &'b mut SceneArrays,
-    textures: HashMap<&'a str, LoweredInput>,
+    textures: &'b mut Textures<'a>,
     materials: HashMap<&'a str, LoweredMaterial>,
-    problems: Vec<Problem>,
 }
 
-/// Lowers all textures and materials; the latter by name.
+/// Lowers all materials, and the textures that they look at.
 pub(super) fn lower<'a>(
     desc: &'a SceneDesc,
-    options: &LowerOptions,
+    textures: &mut Textures<'a>,
     arrays: &mut SceneArrays,
-) -> Result<HashMap<&'a str, LoweredMaterial>, Vec<Problem>> {
-    let mut lowering = Lowering {
-        desc,
-        options,
-        arrays,
-        textures: HashMap::new(),
-        materials: HashMap::new(),
-        problems: Vec::new(),
-    };
-    for name in desc.textures.keys() {
-        lowering.texture(name);
-    }
+) -> HashMap<&'a str, LoweredMaterial> {
+    let mut lowering = Lowering { desc, arrays, textures, materials: HashMap::new() };
     for name in desc.materials.keys() {
         lowering.material_of(name);
     }
-    let Lowering { materials, problems, .. } = lowering;
-    if problems.is_empty() { Ok(materials) } else { Err(problems) }
+    lowering.materials
 }
 
 fn color(c: Triple) -> Color {
     Color::from_array(c.map(|x| x as f32))
 }
 
-fn solid(c: Triple) -> LoweredInput {
-    let input = ColorInput { solid: color(c), texture: TextureRef::default() };
-    LoweredInput { input, needs_uv: false }
-}
-
-fn textured(kind: TextureKind, index: usize, needs_uv: bool) -> LoweredInput {
-    let texture = TextureRef::new(kind, index as u32);
-    LoweredInput { input: ColorInput { solid: Color::BLACK, texture }, needs_uv }
-}
-
 impl<'a> Lowering<'a, '_> {
     fn color_input(&mut self, desc: &'a ColorDesc) -> LoweredInput {
-        match desc {
-            ColorDesc::Solid(c) => solid(*c),
-            ColorDesc::Texture(name) => self.texture(name),
-        }
-    }
-
-    /// The texture of this name, lowered when it is first asked for. Validation has made sure that
-    /// it exists and does not lead to itself.
-    fn texture(&mut self, name: &'a str) -> LoweredInput {
-        if let Some(done) = self.textures.get(name) {
-            return *done;
-        }
-        let lowered = match &self.desc.textures[name] {
-            TextureDesc::Solid { color } => solid(*color),
-            TextureDesc::Checker { scale, even, odd } => {
-                // The inner ones first: handles lead to earlier checkers only.
-                let (even, odd) = (self.color_input(even), self.color_input(odd));
-                self.arrays.checkers.push(Checker {
-                    even: even.input,
-                    odd: odd.input,
-                    inv_scale: (1.0 / scale) as f32,
-                    _pad: [0; 3],
-                });
-                let index = self.arrays.checkers.len() - 1;
-                textured(TextureKind::Checker, index, even.needs_uv || odd.needs_uv)
-            }
-            TextureDesc::Noise { scale, pattern, octaves, seed, low, high } => {
-                self.arrays.noises.push(Noise {
-                    low: color(*low),
-                    scale: *scale as f32,
-                    high: color(*high),
-                    pattern: match pattern {
-                        NoisePattern::Noise => PATTERN_NOISE,
-                        NoisePattern::Turbulence => PATTERN_TURBULENCE,
-                        NoisePattern::Marble => PATTERN_MARBLE,
-                    },
-                    octaves: *octaves,
-                    seed: *seed,
-                    _pad: [0; 2],
-                });
-                textured(TextureKind::Noise, self.arrays.noises.len() - 1, false)
-            }
-            TextureDesc::Image { path, filter, .. } => {
-                let (base, limits) = (&self.options.base_dir, &self.options.image_limits);
-                match assets::read(path, base, limits) {
-                    Ok(image) => self.image(&image, *filter),
-                    Err(error) => {
-                        let path = KeyPath::default().join("textures").join(name).join("path");
-                        let message = error.to_string();
-                        self.problems.push(Problem { path, message, help: None });
-                        solid([0.0; 3])
-                    }
-                }
-            }
-            _ => solid([0.0; 3]),
-        };
-        self.textures.insert(name, lowered);
-        lowered
-    }
-
-    fn image(&mut self, image: &TextureImage, filter: ImageFilter) -> LoweredInput {
-        if self.arrays.srgb_table.is_empty() {
-            self.arrays.srgb_table = zrak_image::srgb8_to_linear_table().to_vec();
-        }
-        let first_word = self.arrays.texels.len() as u32;
-        let format = match &image.texels {
-            Texels::Srgb8(texels) => {
-                let words = texels.iter().map(|&[r, g, b, _]| u32::from_le_bytes([r, g, b, 255]));
-                self.arrays.texels.extend(words);
-                TEXELS_SRGB8
-            }
-            Texels::Linear(texels) => {
-                self.arrays.texels.extend(texels.iter().flatten().map(|x| x.to_bits()));
-                TEXELS_LINEAR
-            }
-        };
-        self.arrays.images.push(ImageTexture {
-            first_word,
-            width: image.width,
-            height: image.height,
-            format,
-            bilinear: u32::from(filter == ImageFilter::Bilinear),
-            _pad: [0; 3],
-        });
-        textured(TextureKind::Image, self.arrays.images.len() - 1, true)
+        self.textures.color_input(self.arrays, desc)
     }
 
     fn scalar_input(&mut self, desc: &'a ScalarDesc) -> (ScalarInput, bool) {
-        match desc {
-            ScalarDesc::Value(x) => (ScalarInput::solid(*x as f32), false),
-            ScalarDesc::Texture(name) => {
-                let LoweredInput { input, needs_uv } = self.texture(name);
-                (ScalarInput { value: input.solid.r, texture: input.texture }, needs_uv)
-            }
-        }
+        self.textures.scalar_input(self.arrays, desc)
     }
 
     fn roughness(&mut self, desc: &'a RoughnessDesc) -> (Roughness, bool) {
@@ -301,7 +175,7 @@ impl<'a> Lowering<'a, '_> {
             record.alpha_cutoff = *cutoff as f32;
         }
         if let Some(name) = normal_map {
-            let lowered = self.texture(name);
+            let lowered = self.textures.normals(self.arrays, name);
             needs_uv = true;
             record.flags |= SURFACE_NORMAL_MAP;
             record.normal_map = lowered.input.texture;

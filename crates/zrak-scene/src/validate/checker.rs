@@ -107,6 +107,13 @@ impl<'a> Checker<'a> {
         good
     }
 
+    /// Checks a direction: any length but none.
+    pub(super) fn direction(&mut self, key: &str, value: Triple) {
+        if self.triple(key, value) && super::length(value) < super::limits::LENGTH_MIN {
+            self.note(key, format!("`{key}` has no length"), None);
+        }
+    }
+
     /// Checks a radiance.
     pub(super) fn radiance(&mut self, key: &str, color: Triple) {
         let path = self.path.join(key);

@@ -1,9 +1,7 @@
 //! Lights without a surface, and media that surfaces bound.
 
 use super::checker::Checker;
-use super::length;
-use super::limits::LENGTH_MIN;
-use crate::desc::{LightDesc, Triple};
+use crate::desc::LightDesc;
 
 pub(super) fn check(checker: &mut Checker<'_>) {
     let scene = checker.scene;
@@ -43,7 +41,7 @@ fn one(checker: &mut Checker<'_>, light: &LightDesc) {
             falloff: _,
         } => {
             checker.triple("position", position);
-            direction_of(checker, direction);
+            checker.direction("direction", direction);
             checker.radiance("intensity", intensity);
             let ok = |x: f64| x > 0.0 && x <= 180.0;
             let rule = "more than 0 and at most 180 degrees";
@@ -53,14 +51,8 @@ fn one(checker: &mut Checker<'_>, light: &LightDesc) {
             checker.require("falloff_start_deg", falloff_start_deg, ok, rule, None);
         }
         LightDesc::Distant { direction, irradiance } => {
-            direction_of(checker, direction);
+            checker.direction("direction", direction);
             checker.radiance("irradiance", irradiance);
         }
-    }
-}
-
-fn direction_of(checker: &mut Checker<'_>, direction: Triple) {
-    if checker.triple("direction", direction) && length(direction) < LENGTH_MIN {
-        checker.note("direction", "`direction` has no length", None);
     }
 }

@@ -23,6 +23,7 @@ use checker::Checker;
 use limits::{DEPTH_MAX, LENGTH_MIN, PIXELS_MAX, SAMPLES_MAX, SIDE_MAX, SINE_MIN};
 
 use crate::desc::{BackgroundDesc, CameraDesc, ProjectionDesc, RenderDesc, SceneDesc, Triple};
+use crate::lower::Transform;
 
 /// The version of the format that this version of zrak reads.
 pub const FORMAT: u32 = 1;
@@ -155,10 +156,30 @@ fn background(checker: &mut Checker<'_>, background: &BackgroundDesc) {
             checker.radiance("bottom", bottom);
             checker.radiance("top", top);
         }
-        BackgroundDesc::Image { .. } | BackgroundDesc::Sky { .. } => {
-            checker.note("kind", "this kind of background is not rendered yet", None);
+        BackgroundDesc::Image { ref path, mapping: _, strength, tint, ref transform } => {
+            if path.is_empty() {
+                let help = "name a picture's file, relative to the scene file";
+                checker.note("path", "`path` is empty", Some(help));
+            }
+            checker.require("strength", strength, is_strength, STRENGTHS, None);
+            checker.radiance("tint", tint);
+            transforms::check(checker, transform, Some(Transform::IDENTITY));
+        }
+        BackgroundDesc::Sky { sun_direction, up, turbidity, ground_albedo, sun: _, strength } => {
+            checker.direction("sun_direction", sun_direction);
+            checker.direction("up", up);
+            let is_turbidity = |x| (1.0..=10.0).contains(&x);
+            checker.require("turbidity", turbidity, is_turbidity, "from 1 to 10", None);
+            checker.albedo_at(&checker.path_of("ground_albedo"), ground_albedo);
+            checker.require("strength", strength, is_strength, STRENGTHS, None);
         }
     }
+}
+
+const STRENGTHS: &str = "from 0 to 1e9";
+
+fn is_strength(x: f64) -> bool {
+    (0.0..=limits::RADIANCE_MAX).contains(&x)
 }
 
 fn sub(a: Triple, b: Triple) -> Triple {

@@ -1,6 +1,9 @@
 //! Warps against their densities.
 
-use crate::math::{square_to_uniform_disk, square_to_uniform_sphere};
+use crate::math::{
+    equal_area_sphere_to_square, equal_area_square_to_sphere, square_to_uniform_disk,
+    square_to_uniform_sphere, vec3,
+};
 use crate::testing::{ChiSquared, Rng, double, length};
 
 const N: u32 = 2_000_000;
@@ -55,4 +58,23 @@ fn corners_of_the_square_are_mapped_to_points() {
         }
     }
     assert_eq!(square_to_uniform_sphere(0.0, 0.3).z, 1.0);
+}
+
+#[test]
+fn the_equal_area_map_can_be_undone() {
+    let mut rng = Rng::new(12);
+    for _ in 0..100_000 {
+        let (x, y) = (rng.range(0.0, 1.0) as f32, rng.range(0.0, 1.0) as f32);
+        let (u, v) = equal_area_sphere_to_square(equal_area_square_to_sphere(x, y));
+        assert!((u - x).abs() < 1e-3 && (v - y).abs() < 1e-3, "({x}, {y}) became ({u}, {v})");
+    }
+    // Away from where the square root has no slope.
+    for (d, at) in [
+        (vec3(0.0, 0.0, 1.0), (0.5, 0.5)),
+        (vec3(1.0, 0.0, 0.0), (1.0, 0.5)),
+        (vec3(0.0, 1.0, 0.0), (0.5, 1.0)),
+        (vec3(-1.0, 0.0, 0.0), (0.0, 0.5)),
+    ] {
+        assert_eq!(equal_area_sphere_to_square(d), at);
+    }
 }
