@@ -18,7 +18,7 @@ fn bicubic(c: &[[f32; 4]; 4], t: f32, alpha: f32) -> f32 {
 
 /// Albedo of facets that are perfect mirrors, for light at this cosine, 0 to 1, to a surface with the
 /// roughness `alpha`, at most 1. At most 0.017 too large.
-#[inline(always)]
+#[cfg_attr(target_arch = "nvptx64", inline(always))]
 #[must_use]
 pub fn mirror_albedo(cos: f32, alpha: f32) -> f32 {
     const LOSS: [[f32; 4]; 4] = [
@@ -35,7 +35,7 @@ pub fn mirror_albedo(cos: f32, alpha: f32) -> f32 {
 
 /// The cosine at which a smooth surface with the index `eta` > 1 reflects as much as the facets of a
 /// rough one do in the mean, at least.
-#[inline(always)]
+#[cfg_attr(target_arch = "nvptx64", inline(always))]
 #[must_use]
 pub fn mean_cosine(cos: f32, alpha: f32, eta: f32) -> f32 {
     const SHIFT: [[f32; 4]; 4] = [
@@ -52,7 +52,7 @@ pub fn mean_cosine(cos: f32, alpha: f32, eta: f32) -> f32 {
 }
 
 /// Albedo of the reflection by the facets of a dielectric with the index `eta` > 1, seen from outside.
-#[inline(always)]
+#[cfg_attr(target_arch = "nvptx64", inline(always))]
 #[must_use]
 pub fn dielectric_albedo(cos: f32, alpha: f32, eta: f32) -> f32 {
     fresnel_dielectric(mean_cosine(cos, alpha, eta), 1.0 / eta) * mirror_albedo(cos, alpha)

@@ -16,7 +16,7 @@ pub struct ConductorBsdf {
 
 impl ConductorBsdf {
     /// Draws a direction.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     #[must_use]
     pub fn sample(&self, wo: Vec3, u: f32, v: f32) -> Option<BsdfSample> {
         if wo.z == 0.0 {
@@ -40,7 +40,7 @@ impl ConductorBsdf {
     }
 
     /// Value and density for a pair of directions.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     #[must_use]
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
         let sum = wo + wi;

@@ -66,7 +66,7 @@ impl DielectricBsdf {
     }
 
     /// Draws a direction among `lobes`; `u_lobe` chooses the way.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     #[must_use]
     pub fn sample(
         &self,
@@ -115,7 +115,7 @@ impl DielectricBsdf {
     }
 
     /// Value for a pair of directions, and the density with which `sample` gives `wi` among `lobes`.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     #[must_use]
     pub fn eval(&self, wo: Vec3, wi: Vec3, lobes: Lobes) -> BsdfValue {
         if self.roughness.is_smooth() || self.eta == 1.0 || wo.z == 0.0 || wi.z == 0.0 {

@@ -79,7 +79,7 @@ fn scattered(g: f32, d: Vec3, u: f32, v: f32) -> (Vec3, f32) {
 
 impl CoatedBase {
     /// Draws a direction above the base for `wo` above it.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     fn sample(&self, wo: Vec3, u: f32, v: f32) -> Option<BsdfSample> {
         match self {
             Self::Diffuse(albedo) => {
@@ -91,7 +91,7 @@ impl CoatedBase {
     }
 
     /// f |cos wi| and the density of `wi`.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Color, f32) {
         match self {
             Self::Diffuse(albedo) => {
@@ -201,7 +201,7 @@ impl LayeredBsdf {
     }
 
     /// One path's share of light that has been below the outside.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     fn eval_once(&self, wo: Vec3, wi: Vec3, stream: &mut Stream) -> Color {
         let coat = &self.coat;
         let exit_is_delta = coat.interface.roughness.is_smooth() || coat.interface.eta == 1.0;

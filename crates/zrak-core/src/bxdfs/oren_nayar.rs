@@ -22,7 +22,7 @@ fn single_albedo(cos: f32, roughness: f32) -> f32 {
 }
 
 /// f(wo, wi) for directions above the surface, whose roughness is from 0 (Lambert) to 1.
-#[inline(always)]
+#[cfg_attr(target_arch = "nvptx64", inline(always))]
 #[must_use]
 pub fn oren_nayar(color: Color, roughness: f32, wo: Vec3, wi: Vec3) -> Color {
     if roughness <= 0.0 {

@@ -45,7 +45,7 @@ fn sensitivity(difference_m: f32, shift_turns: f32) -> Color {
 impl ThinFilm {
     /// Share of light that is reflected at the cosine `cos`, for a base of the index `base` by channel,
     /// of which only how much it reflects at right angles counts.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     #[must_use]
     pub fn reflectance(&self, cos: f32, base: Color) -> Color {
         let sin2 = (1.0 - cos * cos) / (self.ior * self.ior);

@@ -81,7 +81,7 @@ impl TrowbridgeReitz {
     }
 
     /// Normal that is seen from `w`, on the side of z.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     #[must_use]
     pub fn sample_visible(&self, w: Vec3, u: f32, v: f32) -> Vec3 {
         // Stretch, so that the distribution is that of a hemisphere.

@@ -10,7 +10,7 @@
 //! all: a path that looks at a light remembers how it will go on.
 
 use crate::accel::Accel;
-use crate::interaction::SurfaceInteraction;
+use crate::interaction::{Hit, SurfaceInteraction};
 use crate::lights::LightSample;
 use crate::materials::{Scatter, evaluate, medium_towards, resolve, respond};
 use crate::math::{Color, Vec3, dot};
@@ -95,16 +95,34 @@ impl Path {
     /// Traces one ray and prepares the next; false if the path has ended.
     #[inline(always)]
     pub fn advance(&mut self, scene: &SceneView, accel: impl Accel) -> bool {
+        let has_lights = scene.kinds.has_feature(Feature::Lights);
+        let sampler =
+            if has_lights && self.to_light { self.sampler.toward_light() } else { self.sampler };
+        let t_max = if has_lights { self.t_max } else { f32::INFINITY };
+        self.n_rays += 1;
+        let hit = accel.closest_hit(scene, &self.ray, &sampler, t_max);
+        self.shade(scene, hit, &sampler, t_max)
+    }
+
+    /// What follows from the closest hit before `t_max`, if there is one.
+    ///
+    /// A call on the processor, so that it is compiled once and not with every tree and instruction
+    /// set; on the GPU a part of the kernel, which leaves out what its scenes do not have.
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
+    #[cfg_attr(not(target_arch = "nvptx64"), inline(never))]
+    fn shade(
+        &mut self,
+        scene: &SceneView,
+        hit: Option<Hit>,
+        sampler: &Sampler,
+        t_max: f32,
+    ) -> bool {
         let kinds = scene.kinds;
         let has_lights = kinds.has_feature(Feature::Lights);
         let has_holes = kinds.has_material(MaterialKind::Surface)
             || kinds.has_material(MaterialKind::Interface);
         let has_media = kinds.has_feature(Feature::Media);
         let to_light = has_lights && self.to_light;
-        let sampler = if to_light { self.sampler.toward_light() } else { self.sampler };
-        let t_max = if has_lights { self.t_max } else { f32::INFINITY };
-        self.n_rays += 1;
-        let hit = accel.closest_hit(scene, &self.ray, &sampler, t_max);
         let t_end = match hit {
             Some(hit) => hit.t,
             None => t_max,
@@ -161,7 +179,7 @@ impl Path {
                 {
                     surface.footprint = scene.globals.camera.spread * self.length;
                 }
-                let resolved = resolve(scene, &mut surface, d, &sampler);
+                let resolved = resolve(scene, &mut surface, d, sampler);
                 if has_holes && resolved.is_hole {
                     self.n_extra += 1;
                     self.ray = surface.spawn(d, self.ray.time);

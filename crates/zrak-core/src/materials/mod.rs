@@ -78,7 +78,7 @@ impl Response {
 
 /// f(wo, wi) |cos| for light that arrives along `wi` (towards where it comes from) and leaves against
 /// `d`; black for deltas. Both directions are unit vectors in world space.
-#[inline(always)]
+#[cfg_attr(target_arch = "nvptx64", inline(always))]
 #[must_use]
 pub fn evaluate(
     scene: &SceneView,
@@ -105,7 +105,7 @@ pub fn evaluate(
 }
 
 /// Response of a surface, once resolved, to a path that arrives along `d`.
-#[inline(always)]
+#[cfg_attr(target_arch = "nvptx64", inline(always))]
 #[must_use]
 pub fn respond(
     scene: &SceneView,
@@ -160,7 +160,7 @@ const fn is_local(kind: MaterialKind) -> bool {
 }
 
 /// Draws a direction from such a material.
-#[inline(always)]
+#[cfg_attr(target_arch = "nvptx64", inline(always))]
 fn sample_local(
     scene: &SceneView,
     surface: &SurfaceInteraction,
@@ -200,7 +200,7 @@ fn sample_local(
 }
 
 /// f |cos wi| of such a material.
-#[inline(always)]
+#[cfg_attr(target_arch = "nvptx64", inline(always))]
 fn evaluate_local(
     scene: &SceneView,
     surface: &SurfaceInteraction,

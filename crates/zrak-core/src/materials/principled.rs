@@ -79,7 +79,7 @@ impl Principled {
 
     /// The parameters at a point, brought into their ranges: textures may leave them. What belongs to a
     /// layer that is not there is not looked up.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     #[must_use]
     pub fn evaluate(&self, scene: &SceneView, at: &TextureContext) -> PrincipledParams {
         let mut p = PrincipledParams {

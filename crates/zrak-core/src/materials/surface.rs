@@ -85,7 +85,7 @@ pub struct Resolved {
 
 /// Finds out what is at a point that is looked at along `d`, and leaves in `surface` the material
 /// that scatters and the normal for it.
-#[inline(always)]
+#[cfg_attr(target_arch = "nvptx64", inline(always))]
 #[must_use]
 pub fn resolve(
     scene: &SceneView,
@@ -119,7 +119,7 @@ pub fn resolve(
 }
 
 impl Surface {
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     fn apply(
         &self,
         scene: &SceneView,
@@ -162,7 +162,7 @@ impl Surface {
     }
 
     /// Turns the shading normal by the normal map, in the frame of the texture's directions.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     fn map_normal(&self, scene: &SceneView, surface: &mut SurfaceInteraction, at: &TextureContext) {
         let ns = surface.ns;
         let along_u = surface.dpdu - ns * dot(ns, surface.dpdu);
@@ -182,7 +182,7 @@ impl Surface {
 
     /// Turns the shading normal by the slope of the height: Blinn, *Simulation of Wrinkled Surfaces*,
     /// 1978, with forward differences over half the ray's footprint.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     fn bump(&self, scene: &SceneView, surface: &mut SurfaceInteraction, at: &TextureContext) {
         let step = |footprint: f32| max(0.5 * footprint, 5e-4);
         let (du, dv) = (step(at.duv[0]), step(at.duv[1]));

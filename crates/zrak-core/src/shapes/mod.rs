@@ -126,7 +126,7 @@ pub fn intersect_primitive(
 }
 
 /// What is where a ray hits a surface.
-#[inline(always)]
+#[cfg_attr(target_arch = "nvptx64", inline(always))]
 #[must_use]
 pub fn surface_interaction(scene: &SceneView, hit: &Hit, ray: &Ray) -> SurfaceInteraction {
     if scene.kinds.has_prim(PrimKind::Instance) && hit.instance != NO_INSTANCE {

@@ -41,7 +41,7 @@ const _: () = assert!(size_of::<Fractal>() == 48);
 
 impl Fractal {
     /// Colour at `p`. It goes beyond both ends, but not below black.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     #[must_use]
     pub fn evaluate(&self, p: Vec3) -> Color {
         let p = p * self.scale;

@@ -83,7 +83,7 @@ pub const fn words_per_texel(format: u32) -> u32 {
 
 impl ImageMap {
     /// Value at a point.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     pub(super) fn evaluate(&self, arrays: &TextureArrays, at: &TextureContext) -> Color {
         let (uv, duv) = if self.mapping == NO_MAPPING {
             (at.uv, at.duv)
@@ -103,7 +103,7 @@ impl ImageMap {
         self.lookup(arrays, uv, [0.0; 2])
     }
 
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     fn lookup(&self, arrays: &TextureArrays, uv: [f32; 2], duv: [f32; 2]) -> Color {
         let (width, height) = (self.raster.width as f32, self.raster.height as f32);
         if self.filter == FILTER_NEAREST {

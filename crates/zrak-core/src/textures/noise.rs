@@ -36,7 +36,7 @@ const _: () = assert!(size_of::<Noise>() == 48);
 
 impl Noise {
     /// Colour at the world-space point `p`.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     #[must_use]
     pub fn evaluate(&self, p: Vec3) -> Color {
         let value = match self.pattern {

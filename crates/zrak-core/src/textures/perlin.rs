@@ -16,7 +16,7 @@ fn gradient(x: i32, y: i32, z: i32, seed: u32) -> Vec3 {
 }
 
 /// Noise in (-1, 1) with one feature per unit; 0 at lattice points.
-#[inline(always)]
+#[cfg_attr(target_arch = "nvptx64", inline(always))]
 #[must_use]
 pub fn perlin(p: Vec3, seed: u32) -> f32 {
     let (ix, iy, iz) = (floor(p.x), floor(p.y), floor(p.z));
@@ -37,7 +37,7 @@ pub fn perlin(p: Vec3, seed: u32) -> f32 {
 }
 
 /// |sum over octaves i of noise(2^i p) / 2^i|.
-#[inline(always)]
+#[cfg_attr(target_arch = "nvptx64", inline(always))]
 #[must_use]
 pub fn turbulence(p: Vec3, octaves: u32, seed: u32) -> f32 {
     let mut sum = 0.0;

@@ -77,7 +77,7 @@ const _: () = assert!(size_of::<TextureOp>() == 32);
 
 impl Program {
     /// Colour at a point.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     pub(super) fn evaluate(&self, arrays: &TextureArrays, at: &TextureContext) -> Color {
         let mut slots = [Color::BLACK; N_SLOTS];
         let mut i = 0;

@@ -60,7 +60,7 @@ impl PrincipledBsdf {
     }
 
     /// Share of light that a facet reflects, metal and dielectric together.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     pub(super) fn reflected(&self, cos: f32) -> Color {
         let p = &self.params;
         let mut dielectric = Color::BLACK;
@@ -126,7 +126,7 @@ impl PrincipledBsdf {
     }
 
     /// Share of light that comes through a facet at this cosine.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     pub(super) fn refracted(&self, cos: f32) -> Color {
         let share = (1.0 - self.metal) * self.glass;
         let light = self.below_coat * self.coat_color(1.0, 1) * self.params.transmission_color;
@@ -143,7 +143,7 @@ pub(super) fn facets(distribution: &TrowbridgeReitz, wo: Vec3, wi: Vec3, wm: Vec
 }
 
 /// The same for facets that refract all of the light, and the cosine at which they are met.
-#[inline(always)]
+#[cfg_attr(target_arch = "nvptx64", inline(always))]
 pub(super) fn refracting_facets(
     distribution: &TrowbridgeReitz,
     wo: Vec3,

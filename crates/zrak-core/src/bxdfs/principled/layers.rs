@@ -34,7 +34,7 @@ fn modulated(eta: f32, weight: f32) -> f32 {
 
 impl PrincipledBsdf {
     /// The surface seen from `wo`; none from its very edge.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     #[must_use]
     pub fn new(params: &PrincipledParams, wo: Vec3) -> Option<Self> {
         if wo.z == 0.0 {

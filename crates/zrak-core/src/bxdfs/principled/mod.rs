@@ -99,7 +99,7 @@ pub struct PrincipledBsdf {
 
 impl PrincipledBsdf {
     /// Draws a direction; `u_lobe` chooses the lobe.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     #[must_use]
     pub fn sample(&self, u_lobe: f32, u: f32, v: f32) -> Option<BsdfSample> {
         let wo = self.wo;
@@ -184,7 +184,7 @@ impl PrincipledBsdf {
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     fn eval_reflection(&self, wi: Vec3) -> BsdfValue {
         let (p, wo) = (&self.params, self.wo);
         let mut f_cos = Color::BLACK;
@@ -218,7 +218,7 @@ impl PrincipledBsdf {
         BsdfValue { f_cos, pdf }
     }
 
-    #[inline(always)]
+    #[cfg_attr(target_arch = "nvptx64", inline(always))]
     fn eval_transmission(&self, wi: Vec3) -> BsdfValue {
         let (p, wo) = (&self.params, self.wo);
         let mut f_cos = Color::BLACK;
