@@ -2,7 +2,9 @@
 
 mod boxes;
 mod instance;
+mod mesh;
 mod quad;
+mod round;
 mod spawn;
 mod sphere;
 mod triangle;
