@@ -229,7 +229,56 @@ class DiffuseTransmission(mi.BSDF):
         return "DiffuseTransmission[]"
 
 
+class Correlated(mi.BSDF):
+    """A rough BSDF of Mitsuba's with the masking and shadowing of zrak and pbrt, which are correlated by height:
+    1 / (1 + a + b) instead of 1 / ((1 + a) (1 + b)). Heitz, *Understanding the Masking-Shadowing Function*, 2014."""
+
+    def __init__(self, props):
+        mi.BSDF.__init__(self, props)
+        self.inner, self.alphas = props["bsdf"], [props["alpha_u"], props["alpha_v"]]
+        self.m_components = [self.inner.flags(i) for i in range(self.inner.component_count())]
+        self.m_flags = self.inner.flags()
+
+    def ratio(self, si, wo):
+        alpha_u, alpha_v = (a if isinstance(a, float) else a.eval_1(si) for a in self.alphas)
+
+        def masked(w):
+            slope2 = (dr.square(alpha_u * w.x) + dr.square(alpha_v * w.y)) / dr.square(w.z)
+            return 0.5 * (dr.sqrt(1 + slope2) - 1)
+
+        a, b = masked(si.wi), masked(wo)
+        # Infinite at the horizon, where nothing is reflected.
+        ratio = (1 + a) * (1 + b) / (1 + a + b)
+        return dr.select(dr.isfinite(ratio), ratio, 1.0)
+
+    def sample(self, ctx, si, s1, s2, active=True):
+        bs, weight = self.inner.sample(ctx, si, s1, s2, active)
+        return bs, weight * self.ratio(si, bs.wo)
+
+    def eval(self, ctx, si, wo, active=True):
+        return self.inner.eval(ctx, si, wo, active) * self.ratio(si, wo)
+
+    def pdf(self, ctx, si, wo, active=True):
+        return self.inner.pdf(ctx, si, wo, active)
+
+    def eval_pdf(self, ctx, si, wo, active=True):
+        value, pdf = self.inner.eval_pdf(ctx, si, wo, active)
+        return value * self.ratio(si, wo), pdf
+
+    def traverse(self, callback):
+        pass
+
+    def to_string(self):
+        return "Correlated[]"
+
+
 mi.register_bsdf("diffusetransmission", DiffuseTransmission)
+mi.register_bsdf("correlated", Correlated)
+
+
+def correlated(bsdf, alpha_u, alpha_v=None):
+    """A rough BSDF with correlated masking and shadowing."""
+    return {"type": "correlated", "bsdf": bsdf, "alpha_u": alpha_u, "alpha_v": alpha_u if alpha_v is None else alpha_v}
 
 
 # --------------------------------------------------------------------------------------------------------- scenes
@@ -313,7 +362,9 @@ class Scene:
         if alpha is not None:
             u, v = alpha
             fields["roughness"] = {"u": u} if u == v else {"u": u, "v": v}
-            bsdf |= {"type": "roughconductor", "distribution": "ggx", "alpha_u": self.number(u), "alpha_v": self.number(v)}
+            alphas = [self.number(u), self.number(v)]
+            bsdf |= {"type": "roughconductor", "distribution": "ggx", "alpha_u": alphas[0], "alpha_v": alphas[1]}
+            bsdf = correlated(bsdf, *alphas)
         return self.material(name, fields, bsdf)
 
     def dielectric(self, name, ior, alpha=None):
@@ -321,6 +372,7 @@ class Scene:
         if alpha is not None:
             fields = {"kind": "rough_dielectric", "ior": ior, "roughness": {"u": alpha}}
             bsdf |= {"type": "roughdielectric", "distribution": "ggx", "alpha": alpha}
+            bsdf = correlated(bsdf, alpha)
         return self.material(name, fields, bsdf, twosided=False)
 
     def surface(self, name, base, bsdf, **fields):
@@ -356,12 +408,13 @@ class Scene:
         self.place(material, {"type": "rectangle", "to_world": to_world(m)})
 
     def sphere(self, center, radius, material, turn=np.eye(4), medium=None):
-        """Turned about its centre. Mitsuba's poles are on z and u begins at +x, zrak's on y and at -x."""
+        """Turned about its centre. Mitsuba has the first row of a picture at +z, u from +x over +y; zrak has the last row at
+        -y, u from -x over +z."""
         m = translate(*center) @ turn
         self.objects.append({"kind": "sphere", "center": [0, 0, 0] if len(steps(turn)) else center, "radius": radius, "material": material})
         if len(steps(turn)):
             self.objects[-1]["transform"] = steps(m)
-        axes = np.array([[-1, 0, 0, 0], [0, 0, 1, 0], [0, 1, 0, 0], [0, 0, 0, 1.0]])
+        axes = np.array([[-1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1.0]])
         self.place(material, {"type": "sphere", "to_world": to_world(m @ axes @ scale(radius))}, medium)
 
     def mesh_file(self, name, file):
@@ -415,7 +468,7 @@ def metals():
     r = np.array([0.8, 0.5, 0.3])
     k = 2 * np.sqrt(r / (1 - r))
     s.material("tinted", {"kind": "conductor", "metal": {"kind": "reflectance", "reflectance": r.tolist()}, "roughness": {"u": 0.04, "map": "sqrt"}},
-               {"type": "roughconductor", "distribution": "ggx", "alpha": 0.2, "eta": rgb([1, 1, 1]), "k": rgb(k)})
+               correlated({"type": "roughconductor", "distribution": "ggx", "alpha": 0.2, "eta": rgb([1, 1, 1]), "k": rgb(k)}, 0.2))
     s.material("mirror", {"kind": "metal", "color": [0.9, 0.8, 0.7]}, {"type": "conductor", "material": "none", "specular_reflectance": rgb([0.9, 0.8, 0.7])})
     s.image("amount", "amount.png", raw=True)
     s.conductor("patchy", *GOLD, alpha=("amount", "amount"))
@@ -495,7 +548,7 @@ def bumps():
 
     mapped("mapped", "white")
     mapped("mapped_copper", "copper")
-    inner = {"type": "bumpmap", "arbitrary": s.textures["heights"], "scale": 4.0, "bsdf": s.bsdfs["white"]["bsdf"]}
+    inner = {"type": "bumpmap", "arbitrary": s.textures["heights"], "scale": 4.0, "bsdf": s.bsdfs["white"]["bsdf"], "flip_invalid_normals": False, "use_shadowing_function": False}
     s.toml["textures"].append(("higher", {"kind": "multiply", "a": "heights", "b": [4, 4, 4]}))
     s.surface("bumpy", "white", {"type": "twosided", "bsdf": inner}, bump="higher")
     s.quad([-1.5, 0, -0.1], [1.4, 0, 0], [0, 0, -1.4], "mapped")
@@ -627,10 +680,16 @@ def instances():
         s.objects.append({"kind": "instance", "prototype": "pair", "transform": steps(m)})
         for part in (m, m @ inner):
             s.mitsuba[f"instance{len(s.mitsuba)}"] = {"type": "instance", "to_world": to_world(part), "thing": {"type": "ref", "id": "thing"}}
-    # A disk and a cylinder.
+    # An ellipse; a disk, on which u is along the rim in zrak and across it in Mitsuba; and a cylinder.
+    s.conductor("gold", *GOLD, alpha=(0.2, 0.2))
     m = translate(-0.3, 0.5, 1.3) @ rotate([0.1, 1, 0], 30) @ scale(0.35, 0.5, 1)
+    s.objects.append({"kind": "disk", "radius": 1, "material": "gold", "transform": steps(m)})
+    s.place("gold", {"type": "disk", "to_world": to_world(m)})
+    m = translate(-1.1, 0.4, 1.6) @ rotate([0.2, 1, 0], -40) @ scale(0.4)
     s.objects.append({"kind": "disk", "radius": 1, "material": "copper", "transform": steps(m)})
-    s.place("copper", {"type": "disk", "to_world": to_world(m)})
+    s.conductor("turned", *COPPER, alpha=(0.4, 0.15))
+    s.place("turned", {"type": "disk", "to_world": to_world(m)})
+    s.toml["materials"].pop()
     m = translate(0.9, 0.2, 1.4) @ rotate([0, 1, 0], 60)
     s.objects.append({"kind": "cylinder", "radius": 0.2, "z_min": -0.4, "z_max": 0.4, "material": "copper", "transform": steps(m)})
     s.place("copper", {"type": "cylinder", "p0": [0, 0, -0.4], "p1": [0, 0, 0.4], "radius": 0.2, "to_world": to_world(m)})
@@ -648,12 +707,13 @@ def layers():
         return s.material(name, {"kind": "principled", "surface": surface}, bsdf, twosided)
 
     principled("matte", {"type": "diffuse", "reflectance": rgb([0.6, 0.3, 0.2])}, base_color=[0.6, 0.3, 0.2], specular_weight=0)
-    metal = {"type": "principled", "base_color": rgb([0.9, 0.6, 0.3]), "metallic": 1.0, "roughness": 0.35}
-    principled("metal", metal, base_color=[0.9, 0.6, 0.3], base_metalness=1, specular_roughness=0.35)
+    # Not so rough that it would matter that zrak's metal gets back what its facets lose.
+    metal = {"type": "principled", "base_color": rgb([0.9, 0.6, 0.3]), "metallic": 1.0, "roughness": 0.25}
+    principled("metal", correlated(metal, 0.0625), base_color=[0.9, 0.6, 0.3], base_metalness=1, specular_roughness=0.25)
     glass = {"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0}
     principled("glass", glass, twosided=False, transmission_weight=1, specular_roughness=0)
     rough = {"type": "roughdielectric", "distribution": "ggx", "alpha": 0.04, "int_ior": 1.5, "ext_ior": 1.0}
-    principled("frosted", rough, twosided=False, transmission_weight=1, specular_roughness=0.2)
+    principled("frosted", correlated(rough, 0.04), twosided=False, transmission_weight=1, specular_roughness=0.2)
     plastic = {"type": "plastic", "diffuse_reflectance": rgb([0.2, 0.5, 0.7]), "int_ior": 1.5, "ext_ior": 1.0, "nonlinear": True}
     coat = {"thickness": 1e-6, "max_depth": 200}
     s.material("plastic", {"kind": "coated_diffuse", "color": [0.2, 0.5, 0.7], "coat": coat}, plastic)

@@ -22,9 +22,8 @@ fn models_without_loss_lose_nothing() {
         reflectance: Color::new(0.25, 1.0, 0.0),
         transmittance: Color::new(0.75, 0.0, 1.0),
     };
-    let mut mean = [0.0; 3];
-    let n = 100_000;
-    for _ in 0..n {
+    let (mut sums, mut n) = ([0.0; 3], 0.0);
+    for _ in 0..100_000 {
         let (wo, u) = (rng.direction(), [rng.unit_f32(), rng.unit_f32(), rng.unit_f32()]);
         if abs(wo.z) < 1e-3 {
             continue;
@@ -37,12 +36,14 @@ fn models_without_loss_lose_nothing() {
         let s = mirror.sample(wo, u[1], u[2]).expect("a mirror");
         assert!((s.weight.g - 1.0).abs() < 1e-5, "{s:?}");
         let s = cloth.sample(wo, u[0], u[1], u[2]).expect("white cloth");
-        for (sum, w) in mean.iter_mut().zip(s.weight.to_array()) {
-            *sum += f64::from(w) / f64::from(n);
+        n += 1.0;
+        for (sum, w) in sums.iter_mut().zip(s.weight.to_array()) {
+            *sum += f64::from(w);
         }
     }
-    for mean in mean {
-        assert!((mean - 1.0).abs() < 0.01, "{mean}");
+    // What a sample brings is 1 give or take 1 at most.
+    for sum in sums {
+        assert!((sum / n - 1.0).abs() < 4.5 / f64::sqrt(n), "{}", sum / n);
     }
 }
 
@@ -97,7 +98,7 @@ fn layers_are_reciprocal() {
         let f = |wo: Vec3, wi: Vec3, purpose: u32| {
             mean(200_000, |i| {
                 let mut stream = Sampler::new(2, i % 256, i / 256, 0).stream(purpose);
-                f64::from(bsdf.eval(wo, wi, &mut stream).g / wi.z)
+                f64::from(bsdf.eval(wo, wi, &mut stream).g / abs(wi.z))
             })
         };
         let ((ab, e1), (ba, e2)) = (f(a, b, 1), f(b, a, 2));
@@ -196,7 +197,7 @@ fn the_principled_surface_is_reciprocal_where_it_can_be() {
         ("rough and matte", rough, 1.0, 1e-4),
         ("leaf", leaf, 1.0, 1e-4),
         // The light that facets reflect several times is given back by the viewer's angle.
-        ("metal", metal, 1.0, 0.05),
+        ("metal", metal, 1.0, 0.1),
         ("glass", glass, 1.5, 0.12),
         ("glossy", plain, 1.0, 0.25),
     ] {

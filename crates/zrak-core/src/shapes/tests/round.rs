@@ -67,7 +67,8 @@ fn disks_are_hit_where_they_are() {
     let (mut n_hits, mut n_misses) = (0, 0);
     for case in 0..60_000 {
         let size = rng.log_range(1e-2, 1e3);
-        let center = double(rng.in_cube(size * rng.range(0.0, 10.0)));
+        let away = size * rng.range(0.0, 10.0);
+        let center = double(rng.in_cube(away));
         let u = scaled(double(rng.direction()), size);
         let v = scaled(double(rng.direction()), size * rng.range(0.3, 1.0));
         if length(cross(u, v)) < 0.2 * length(u) * length(v) {
@@ -133,9 +134,11 @@ fn cylinders_are_hit_where_they_are() {
             material: ANY_MATERIAL,
             _pad: [0; 3],
         };
-        let o = rng.in_cube(5.0 * radius);
-        let d = rng.direction();
-        let ray = Ray { o, d, time: 0.0 };
+        let o = rng.in_cube(3.0 * radius);
+        // At the middle of it, more or less.
+        let aim = double(rng.in_cube(1.2 * radius));
+        let ray = Ray { o, d: single(unit(sub(aim, double(o)))), time: 0.0 };
+        let d = ray.d;
         let (o, d) = (double(o), double(d));
         let a = d[0] * d[0] + d[1] * d[1];
         let b = o[0] * d[0] + o[1] * d[1];
