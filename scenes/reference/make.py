@@ -276,6 +276,19 @@ mi.register_bsdf("diffusetransmission", DiffuseTransmission)
 mi.register_bsdf("correlated", Correlated)
 
 
+FLIP = np.array([[1.0, 0, 0], [0, -1, 1], [0, 0, 1]])
+
+
+def flipped(value):
+    """A description for Mitsuba whose textures have v turned around."""
+    if not isinstance(value, dict):
+        return value
+    value = {k: flipped(v) for k, v in value.items()}
+    if value.get("type") == "bitmap":
+        value["to_uv"] = T3(np.array(value["to_uv"].matrix, float) @ FLIP)
+    return value
+
+
 def correlated(bsdf, alpha_u, alpha_v=None):
     """A rough BSDF with correlated masking and shadowing."""
     return {"type": "correlated", "bsdf": bsdf, "alpha_u": alpha_u, "alpha_v": alpha_u if alpha_v is None else alpha_v}
@@ -332,7 +345,7 @@ class Scene:
         self.toml["textures"].append((name, fields))
         # Mitsuba has v downwards.
         m = np.vstack([np.eye(3)[:2] if uv is None else np.asarray(uv, float), [0, 0, 1]])
-        m = np.array([[1, 0, 0], [0, -1, 1], [0, 0, 1]]) @ m
+        m = FLIP @ m
         bitmap = mi.Bitmap(str(ASSETS / file))
         self.textures[name] = {
             "type": "bitmap", "bitmap": bitmap, "filter_type": filter, "wrap_mode": wrap,
@@ -387,9 +400,9 @@ class Scene:
 
     # Objects.
 
-    def place(self, material, shape, medium=None):
+    def place(self, material, shape, medium=None, flips=False):
         shape = dict(shape)
-        bsdf = self.bsdfs[material]
+        bsdf = flipped(self.bsdfs[material]) if flips else self.bsdfs[material]
         if isinstance(bsdf, tuple):
             shape["emitter"] = bsdf[1]
             shape["bsdf"] = {"type": "diffuse", "reflectance": rgb([0, 0, 0])}
@@ -408,14 +421,14 @@ class Scene:
         self.place(material, {"type": "rectangle", "to_world": to_world(m)})
 
     def sphere(self, center, radius, material, turn=np.eye(4), medium=None):
-        """Turned about its centre. Mitsuba has the first row of a picture at +z, u from +x over +y; zrak has the last row at
-        -y, u from -x over +z."""
+        """Turned about its centre. Mitsuba's u is from +x over +y, its v from +z on; zrak's u from -x over +z, its v from -y on:
+        so v is turned around for Mitsuba's textures."""
         m = translate(*center) @ turn
         self.objects.append({"kind": "sphere", "center": [0, 0, 0] if len(steps(turn)) else center, "radius": radius, "material": material})
         if len(steps(turn)):
             self.objects[-1]["transform"] = steps(m)
-        axes = np.array([[-1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1.0]])
-        self.place(material, {"type": "sphere", "to_world": to_world(m @ axes @ scale(radius))}, medium)
+        axes = np.array([[-1, 0, 0, 0], [0, 0, 1, 0], [0, 1, 0, 0], [0, 0, 0, 1.0]])
+        self.place(material, {"type": "sphere", "to_world": to_world(m @ axes @ scale(radius))}, medium, flips=True)
 
     def mesh_file(self, name, file):
         self.toml["meshes"].append((name, {"kind": "file", "path": f"assets/{file}"}))
