@@ -194,13 +194,7 @@ impl Backend for Run {
     }
 
     fn times(&self) -> Times {
-        let times = self.backend.times();
-        Times {
-            compile_s: self.before.compile_s + times.compile_s,
-            upload_s: self.before.upload_s + times.upload_s,
-            render_s: self.before.render_s + times.render_s,
-            download_s: self.before.download_s + times.download_s,
-        }
+        self.before.plus(&self.backend.times())
     }
 }
 
