@@ -98,4 +98,9 @@ pub trait Backend {
 
     /// Where the time went so far.
     fn times(&self) -> Times;
+
+    /// Parts of it that failed and were done without since, in their own words.
+    fn failures(&self) -> Vec<String> {
+        Vec::new()
+    }
 }

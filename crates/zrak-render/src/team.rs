@@ -58,12 +58,6 @@ impl Team {
         })
     }
 
-    /// Members that failed and were left behind, in their own words.
-    #[must_use]
-    pub fn failures(&self) -> &[String] {
-        &self.failures
-    }
-
     /// Number of samples of the coming pass.
     fn pass_size(&self, n_left: u32) -> u32 {
         let speed: f64 = self.members.iter().filter_map(|member| member.speed).sum();
@@ -210,6 +204,10 @@ impl Backend for Team {
     fn times(&self) -> Times {
         let times = self.members.iter().map(|member| member.backend.times());
         times.fold(self.before, |sum, times| sum.plus(&times))
+    }
+
+    fn failures(&self) -> Vec<String> {
+        self.failures.clone()
     }
 }
 
