@@ -34,6 +34,8 @@ struct Comparison {
     left_out: Option<[usize; 4]>,
     /// Relative error of the reference that its standard error does not show.
     bias: f64,
+    /// How far around a pixel's errors are pooled: not at all where nothing is rare and bright.
+    reach: usize,
 }
 
 /// Means and squared standard errors of values that were estimated in every batch.
@@ -109,7 +111,7 @@ fn blocks(values: &[f64], size: usize) -> Vec<f64> {
 }
 
 fn check(comparison: &Comparison) {
-    let &Comparison { name, size, samples_per_batch, left_out, bias } = comparison;
+    let &Comparison { name, size, samples_per_batch, left_out, bias, reach } = comparison;
     let shape = [size, size, 3];
     let is_left_out = |i: usize| {
         let (x, y) = (i / 3 % size, i / 3 / size);
@@ -148,15 +150,19 @@ fn check(comparison: &Comparison) {
         let bytes: Vec<u8> = ours.iter().flat_map(|x| x.to_le_bytes()).collect();
         std::fs::write(Path::new(&folder).join(format!("{name}.f64")), bytes).unwrap();
     }
-    let values = summary(&ours, &pooled(&our_squares, size, 2), &theirs, &their_squares);
+    let values = summary(&ours, &pooled(&our_squares, size, reach), &theirs, &their_squares);
     println!("{name}, values: {values:?}");
 
     // Errors of pixels are independent, so their squares add up.
     let in_blocks: Vec<Vec<f64>> = batches.iter().map(|batch| blocks(batch, size)).collect();
     let (our_blocks, our_block_squares) = estimates(&in_blocks);
     let our_block_squares = pooled(&our_block_squares, size / BLOCK, 1);
-    let z_blocks =
-        summary(&our_blocks, &our_block_squares, &blocks(&theirs, size), &blocks(&their_squares, size));
+    let z_blocks = summary(
+        &our_blocks,
+        &our_block_squares,
+        &blocks(&theirs, size),
+        &blocks(&their_squares, size),
+    );
     println!("{name}, blocks: {z_blocks:?}");
 
     let channel = |v: &[f64], c: usize| v.iter().skip(c).step_by(3).sum::<f64>();
@@ -180,7 +186,7 @@ fn check(comparison: &Comparison) {
 
 /// A scene of 128 x 128 pixels.
 fn large(name: &'static str, samples_per_batch: u32) -> Comparison {
-    Comparison { name, size: 128, samples_per_batch, left_out: None, bias: 0.0 }
+    Comparison { name, size: 128, samples_per_batch, left_out: None, bias: 0.0, reach: 2 }
 }
 
 /// A scene of 64 x 64 pixels, by `scenes/reference/make.py`.
@@ -223,7 +229,7 @@ fn glass() {
 /// Filters, wrap modes, coordinates of shapes; parallel projection; a light with a picture.
 #[test]
 fn textures() {
-    check(&small("textures", 8));
+    check(&Comparison { reach: 0, ..small("textures", 8) });
 }
 
 /// Normal maps, bump maps, normals of meshes.
