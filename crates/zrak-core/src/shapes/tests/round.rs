@@ -89,7 +89,7 @@ fn disks_are_hit_where_they_are() {
         // How near to its rims what is hit is, as shares of its size.
         let rims = [(r - 1.0).abs(), if inner > 0.0 { (r - inner).abs() } else { 1.0 }];
         let sides = [phi, (phi - phi_max).abs(), std::f64::consts::TAU - phi].map(|a| a * r);
-        let is_ring = phi_max > 6.28;
+        let is_ring = phi_max > 6.1;
         let near = rims.into_iter().chain(if is_ring { [1.0; 3] } else { sides });
         if near.fold(1.0, f64::min) < 2e-3 {
             continue;
@@ -156,7 +156,7 @@ fn cylinders_are_hit_where_they_are() {
                 let p = add(o, scaled(d, t));
                 let phi = angle(p[1], p[0]);
                 let margins = [(p[2] - z_min).abs() / radius, (p[2] - z_max).abs() / radius];
-                let sides = if phi_max > 6.28 {
+                let sides = if phi_max > 6.1 {
                     [1.0; 3]
                 } else {
                     [phi, (phi - phi_max).abs(), std::f64::consts::TAU - phi]
@@ -164,7 +164,7 @@ fn cylinders_are_hit_where_they_are() {
                 let near = margins.into_iter().chain(sides).fold(t.abs() / radius, f64::min);
                 is_unsure |= near < 2e-3;
                 let is_on =
-                    t > 0.0 && (z_min..z_max).contains(&p[2]) && (phi_max > 6.28 || phi < phi_max);
+                    t > 0.0 && (z_min..z_max).contains(&p[2]) && (phi_max > 6.1 || phi < phi_max);
                 if is_on && expected.is_none() {
                     expected = Some((t, phi));
                     n_second += u32::from(sign > 0.0 && c > 0.0);
