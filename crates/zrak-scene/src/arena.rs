@@ -11,13 +11,12 @@ mod tests;
 
 use std::sync::Arc;
 
-use bytemuck::{Pod, Zeroable};
 use zrak_core::accessor::Array;
 use zrak_core::for_each_scene_array;
 use zrak_core::scene::{Globals, Kinds, SceneView, Span, Spans};
 
 pub use check::Corrupt;
-pub(crate) use storage::Storage;
+pub(crate) use storage::{Storage, map};
 
 /// What the arena's start and its arrays are aligned to.
 pub const ARENA_ALIGNMENT: usize = 256;
@@ -218,12 +217,12 @@ impl SceneArena {
         Ok(arena)
     }
 
-    /// The same scene with another camera, depth and seed, which hold no handles; what the camera is in
-    /// stays the same.
+    /// The same scene with another camera, depth and seed; the background and what the camera is in
+    /// stay the same.
     #[must_use]
-    pub fn with_globals(&self, globals: Globals) -> Self {
-        let camera_medium = self.globals.camera_medium;
-        Self { globals: Globals { camera_medium, ..globals }, ..self.clone() }
+    pub(crate) fn with_globals(&self, globals: Globals) -> Self {
+        let Globals { background, camera_medium, .. } = self.globals;
+        Self { globals: Globals { background, camera_medium, ..globals }, ..self.clone() }
     }
 
     /// What there is one of in the scene.
