@@ -178,9 +178,8 @@ impl SceneArena {
     pub fn pack(globals: Globals, arrays: &SceneArrays) -> Result<Self, Corrupt> {
         let mut lens: Lens = [0; ARRAY_TYPES.len()];
         for (len, (name, n)) in lens.iter_mut().zip(arrays.lens()) {
-            *len = u32::try_from(n).map_err(|_| {
-                Corrupt::new(format!("{n} {name} are more than an array can hold"))
-            })?;
+            *len = u32::try_from(n)
+                .map_err(|_| Corrupt::new(format!("{n} {name} are more than an array can hold")))?;
         }
         let Some((spans, size)) = layout(&lens) else {
             return Err(Corrupt::new("the arrays are more than an arena can hold: 64 GiB"));

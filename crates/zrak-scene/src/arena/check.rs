@@ -261,7 +261,14 @@ fn is_plain_convex(prim: PrimRef) -> bool {
 }
 
 fn check_prim(scene: &SceneView, prim: PrimRef) -> Check {
-    let len = match prim.kind() {
+    let is_there = !prim.is_node() && prim.index() < n_prims(scene, prim.0 >> 28);
+    require(is_there, || format!("no primitive {:#x}", prim.0))
+}
+
+/// Number of primitives of a kind.
+fn n_prims(scene: &SceneView, kind: u32) -> u32 {
+    // A handle with this kind, which is not a node's.
+    match PrimRef(kind << 28).kind() {
         Some(PrimKind::Sphere) => scene.spheres.len(),
         Some(PrimKind::MovingSphere) => scene.moving_spheres.len(),
         Some(PrimKind::Quad) => scene.quads.len(),
@@ -273,8 +280,7 @@ fn check_prim(scene: &SceneView, prim: PrimRef) -> Check {
         Some(PrimKind::Instance) => scene.instances.len(),
         Some(PrimKind::Medium) => scene.media.len(),
         Some(PrimKind::Node) | None => 0,
-    };
-    require(prim.index() < len, || format!("no primitive {:#x}", prim.0))
+    }
 }
 
 fn check_material(scene: &SceneView, material: MaterialRef) -> Check {

@@ -177,8 +177,7 @@ impl CompiledScene {
         let SceneDesc { name, description, render, .. } = own;
         let fixed = SceneDesc { name, description, render, camera, ..desc.clone() };
         if fixed != self.desc {
-            let message =
-                "of a compiled scene, only the name, the camera but for its shutter, and the \
+            let message = "of a compiled scene, only the name, the camera but for its shutter, and the \
                  sampling can be changed";
             return Err(vec![Problem {
                 path: KeyPath::default(),

@@ -1,9 +1,7 @@
 //! Checks that triangles of meshes lead to vertices, and vertices to all that their meshes say they have.
 
 use zrak_core::scene::SceneView;
-use zrak_core::shapes::{
-    MESH_COLORS, MESH_NORMALS, MESH_TANGENTS, MESH_UVS, Mesh, MeshTriangle,
-};
+use zrak_core::shapes::{MESH_COLORS, MESH_NORMALS, MESH_TANGENTS, MESH_UVS, Mesh, MeshTriangle};
 
 use super::{Check, require};
 use crate::arena::PIECE_SIZE;
@@ -43,6 +41,7 @@ impl<'a> MeshChecker<'a> {
     }
 
     /// Checks a piece of the triangles.
+    #[inline(never)]
     pub(super) fn check_piece(&self, index: usize) -> Check {
         let triangles = self.scene.mesh_triangles;
         let first = (index * PIECE) as u32;
@@ -50,17 +49,19 @@ impl<'a> MeshChecker<'a> {
         for i in first..end {
             let triangle = triangles.get(i);
             let is_good = match self.good.get(triangle.mesh as usize) {
-                Some(&[first, end]) => triangle.vertices.iter().all(|&v| v >= first && v < end),
+                Some(&[first, end]) => triangle.vertices.iter().all(|&v| first <= v && v < end),
                 None => false,
             };
             if !is_good {
-                self.check_closely(&triangle)?;
+                self.check_closely(triangle)?;
             }
         }
         Ok(())
     }
 
-    fn check_closely(&self, triangle: &MeshTriangle) -> Check {
+    #[cold]
+    #[inline(never)]
+    fn check_closely(&self, triangle: MeshTriangle) -> Check {
         let scene = &self.scene;
         require(triangle.mesh < scene.meshes.len(), || format!("no mesh {}", triangle.mesh))?;
         let mesh = scene.meshes.get(triangle.mesh);

@@ -15,13 +15,14 @@ use zrak_core::accessor::Array;
 use zrak_core::scene::{PrimKind, PrimRef, SceneView};
 use zrak_core::shapes::Instance;
 
-use super::{BATCH, Check, Corrupt, check_prim, require};
+use super::{BATCH, Check, Corrupt, n_prims, require};
 use crate::arena::PIECE_SIZE;
 
 pub(super) struct TreeChecker<'a, const N: usize> {
     name: &'static str,
-    scene: SceneView<'a>,
     nodes: Array<'a, Node<N>>,
+    /// Number of primitives of each kind, by the number of the kind.
+    n_prims: [u32; 16],
     /// Roots of the trees that instances place, in order, each once.
     placed_roots: Vec<u32>,
     /// What was found in the pieces, with their numbers.
@@ -53,6 +54,9 @@ struct Link {
     depth: u8,
 }
 
+/// Bit for each kind of primitive that must not be placed.
+const OF_WORLD: u32 = 1 << PrimKind::Instance as u32 | 1 << PrimKind::Medium as u32;
+
 /// Level of a node that nothing was found to lead to.
 const UNKNOWN: u8 = 0;
 
@@ -77,50 +81,55 @@ impl<'a, const N: usize> TreeChecker<'a, N> {
         if let Some(root) = placed_roots.iter().find(wrong) {
             return Err(Corrupt::new(format!("an instance of node {root} of {name}")));
         }
-        Ok(Self { name, scene: *scene, nodes, placed_roots, parts: Mutex::default() })
+        let n_prims = std::array::from_fn(|kind| n_prims(scene, kind as u32));
+        Ok(Self { name, nodes, n_prims, placed_roots, parts: Mutex::default() })
     }
 
     /// Checks a piece of the nodes.
+    #[inline(never)]
     pub(super) fn check_piece(&self, index: usize) -> Check {
         let first = (index * Self::PIECE) as u32;
         let end = self.nodes.len().min(first.saturating_add(Self::PIECE as u32));
         // Level of each node in its part, and number of its top.
-        let mut known = vec![(UNKNOWN, 0_u32); (end - first) as usize];
+        let mut known = vec![(UNKNOWN, 0_u16); (end - first) as usize];
+        let known = known.as_mut_slice();
         let mut parts = Parts::default();
-        let add_top = |parts: &mut Parts, node: u32| {
-            parts.tops.push(Top { node, depth: 1, is_of_world: false });
-            (1, parts.tops.len() as u32 - 1)
-        };
         for i in first..end {
             let place = (i - first) as usize;
             if known[place].0 == UNKNOWN {
-                known[place] = add_top(&mut parts, i);
+                known[place] = (1, parts.tops.len() as u16);
+                parts.tops.push(Top { node: i, depth: 1, is_of_world: false });
             }
             let (depth, top) = known[place];
+            let below = (depth + 1, top);
+            let mut kinds = 0_u32;
+            for child in self.nodes.get(i).children {
+                let (kind, c) = (child.0 >> 28, child.index());
+                kinds |= 1 << kind;
+                if !child.is_node() {
+                    if c >= self.n_prims[kind as usize] && child != PrimRef::NONE {
+                        return Err(self.wrong_child(i, child));
+                    }
+                    continue;
+                }
+                let is_new = if c >= end {
+                    parts.links.push(Link { child: c, top: u32::from(top), depth: below.0 });
+                    c < self.nodes.len()
+                } else if c > i {
+                    std::mem::replace(&mut known[(c - first) as usize], below).0 == UNKNOWN
+                } else {
+                    false
+                };
+                if !is_new {
+                    return Err(self.wrong_child(i, child));
+                }
+            }
             let part = &mut parts.tops[top as usize];
             part.depth = part.depth.max(depth);
-            for child in self.nodes.get(i).children {
-                if child == PrimRef::NONE {
-                    continue;
-                }
-                if !child.is_node() {
-                    check_prim(&self.scene, child)?;
-                    let kind = child.kind();
-                    part.is_of_world |=
-                        matches!(kind, Some(PrimKind::Instance | PrimKind::Medium));
-                    continue;
-                }
-                let c = child.index();
-                let is_known = |c: u32| c < end && known[(c - first) as usize].0 != UNKNOWN;
-                require(c < self.nodes.len() && c > i && !is_known(c), || {
-                    format!("node {i} of {} has node {c} as a child", self.name)
-                })?;
-                require(usize::from(depth) < MAX_DEPTH, || self.too_deep())?;
-                if c < end {
-                    known[(c - first) as usize] = (depth + 1, top);
-                } else {
-                    parts.links.push(Link { child: c, top, depth: depth + 1 });
-                }
+            part.is_of_world |= kinds & OF_WORLD != 0;
+            // Nodes are kind 0.
+            if kinds & 1 != 0 && usize::from(depth) >= MAX_DEPTH {
+                return Err(self.too_deep());
             }
         }
         // A root has no parent.
@@ -133,8 +142,22 @@ impl<'a, const N: usize> TreeChecker<'a, N> {
         Ok(())
     }
 
-    fn too_deep(&self) -> String {
-        format!("{} is too deep", self.name)
+    // Apart from the loop, whose numbers would have to be in memory for it.
+    #[cold]
+    #[inline(never)]
+    fn wrong_child(&self, parent: u32, child: PrimRef) -> Corrupt {
+        let (name, c) = (self.name, child.index());
+        Corrupt::new(if child.is_node() {
+            format!("node {parent} of {name} has node {c} as a child")
+        } else {
+            format!("no primitive {:#x}", child.0)
+        })
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn too_deep(&self) -> Corrupt {
+        Corrupt::new(format!("{} is too deep", self.name))
     }
 
     fn second_parent(&self, node: u32) -> String {
@@ -153,7 +176,8 @@ impl<'a, const N: usize> TreeChecker<'a, N> {
             tops.append(&mut piece.tops);
         }
         links.par_sort_unstable_by_key(|link| link.child);
-        let (mut links, mut roots) = (links.into_iter().peekable(), placed_roots.into_iter().peekable());
+        let (mut links, mut roots) =
+            (links.into_iter().peekable(), placed_roots.into_iter().peekable());
         // Levels above each part, and whether it is of a tree that instances place.
         let mut above: Vec<(u8, bool)> = Vec::with_capacity(tops.len());
         for Top { node, depth, is_of_world } in tops {
