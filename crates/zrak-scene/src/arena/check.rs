@@ -5,6 +5,8 @@
 //! triangles of meshes. Of several faults, the same one is reported whatever the number of threads.
 
 mod meshes;
+#[cfg(test)]
+mod tests;
 mod trees;
 
 use rayon::prelude::*;

@@ -32,6 +32,9 @@ use crate::validate::{KeyPath, Problem, validate};
 use checksum::Checksum;
 use header::Header;
 
+#[doc(hidden)]
+pub use header::sign;
+
 /// How the names of compiled scenes end.
 pub const EXTENSION: &str = "zscene";
 

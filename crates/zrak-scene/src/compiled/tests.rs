@@ -186,24 +186,12 @@ fn a_changed_bit_is_found_wherever_it_is() {
     }
 }
 
-/// Puts the checksums right, as who wants a damaged file to be read would.
-fn sign(file: &mut [u8]) {
-    let fixed = 128;
-    let lens: Lens = bytemuck::pod_read_unaligned(&file[fixed..fixed + size_of::<Lens>()]);
-    let text_len = u32::from_ne_bytes(file[72..76].try_into().unwrap()) as usize;
-    let start = (fixed + size_of::<Lens>() + text_len).next_multiple_of(4096).min(file.len());
-    let sum = checksum::of_arena(&lens, &file[start..]);
-    file[64..72].copy_from_slice(&sum.to_ne_bytes());
-    file[56..64].fill(0);
-    let sum = checksum::hash(&file[..start]);
-    file[56..64].copy_from_slice(&sum.to_ne_bytes());
-}
-
 #[test]
 fn a_signed_file_is_a_good_file() {
     for good in files() {
         let mut file = good.clone();
-        file[56..72].fill(0);
+        file[..16].fill(0);
+        file[40..72].fill(0);
         sign(&mut file);
         assert!(file == *good);
     }
