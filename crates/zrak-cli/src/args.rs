@@ -7,7 +7,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use zrak::{BackendChoice, RenderOptions, Tree};
 
 use crate::{
-    bench, compare, completions, devices, exit_codes, export, man, render, scenes, selftest,
+    bench, compare, compile, completions, devices, exit_codes, export, man, render, scenes,
+    selftest,
 };
 
 /// A physically based path tracer: the same picture, to the last bit, on processor and GPU
@@ -42,6 +43,9 @@ pub(crate) enum Command {
     Render(render::RenderArgs),
     /// List the built-in scenes
     Scenes(scenes::ScenesArgs),
+    /// Write a scene as a file that renders at once
+    #[command(after_help = compile::EXAMPLES)]
+    Compile(compile::CompileArgs),
     /// Write a scene as a scene file
     #[command(after_help = export::EXAMPLES)]
     Export(export::ExportArgs),

@@ -21,7 +21,7 @@ Examples:
 /// Options of `zrak export`.
 #[derive(Args, Debug)]
 pub(crate) struct ExportArgs {
-    /// Built-in scene (see `zrak scenes`) or path of a .toml or .pbrt file
+    /// Built-in scene (see `zrak scenes`) or path of a scene file (not a compiled one)
     scene: PathBuf,
     /// File to write; `-` is the standard output
     #[arg(long, short, value_name = "FILE", default_value = "-")]
@@ -35,6 +35,11 @@ pub(crate) struct ExportArgs {
 /// Writes the scene.
 pub(crate) fn run(args: &ExportArgs) -> Result<Exit, Failure> {
     let mut scene = args.load.load(&args.scene, false)?;
+    if scene.compiled.is_some() {
+        let message = "a compiled scene cannot be exported, for it has no description of its \
+                       objects; export the scene that it was made of";
+        return Err(Failure::new(Exit::Scene, message));
+    }
     args.overrides.apply(&mut scene.desc)?;
     let is_stdout = args.output.as_os_str() == "-";
     keep_images(&mut scene, (!is_stdout).then_some(&args.output));

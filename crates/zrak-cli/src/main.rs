@@ -6,6 +6,7 @@ mod failure;
 
 mod bench;
 mod compare;
+mod compile;
 mod completions;
 mod devices;
 mod export;
@@ -33,6 +34,7 @@ fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Render(args) => render::run(&args, start),
         Command::Scenes(args) => scenes::run(&args),
+        Command::Compile(args) => compile::run(&args, start),
         Command::Export(args) => export::run(&args),
         Command::Devices(args) => devices::run(&args),
         Command::Compare(args) => compare::run(&args),

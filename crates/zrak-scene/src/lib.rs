@@ -2,6 +2,7 @@
 
 pub mod arena;
 pub mod builtin;
+pub mod compiled;
 pub mod defaults;
 pub mod desc;
 pub mod error;

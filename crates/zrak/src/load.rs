@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use zrak_scene::arena::SceneArena;
 use zrak_scene::builtin;
+use zrak_scene::compiled::{self, CompiledScene};
 use zrak_scene::desc::SceneDesc;
 use zrak_scene::file::{self, Source};
 use zrak_scene::lower::{LowerOptions, lower};
@@ -23,6 +24,9 @@ pub struct Scene {
     pub source: Option<Source>,
     /// What was not read as it stands in a file of another format.
     pub warnings: Vec<String>,
+    /// What was compiled before, if it is a compiled scene: then the description has no objects, and
+    /// only its name, camera and sampling can be changed.
+    pub compiled: Option<CompiledScene>,
 }
 
 /// What may be read.
@@ -47,8 +51,11 @@ impl Scene {
     /// If an image cannot be read, or the description was changed to one that has problems. They
     /// are shown at their places in the file, if there is one.
     pub fn lower(&self) -> Result<Arc<SceneArena>, Error> {
-        let options = LowerOptions::new(&self.base_dir);
-        lower(&self.desc, &options).map(Arc::new).map_err(|problems| match &self.source {
+        let arena = match &self.compiled {
+            Some(compiled) => compiled.arena_for(&self.desc),
+            None => lower(&self.desc, &LowerOptions::new(&self.base_dir)),
+        };
+        arena.map(Arc::new).map_err(|problems| match &self.source {
             Some(source) => source.error(problems).into(),
             None => {
                 let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
@@ -58,7 +65,17 @@ impl Scene {
     }
 }
 
-/// Loads a scene: from a file, if the argument ends in `.toml` or `.pbrt`, has a path separator in it or
+impl Scene {
+    /// Lowers the scene into what can be written to a file and opened again in no time.
+    ///
+    /// # Errors
+    /// As for [`Scene::lower`].
+    pub fn compile(&self) -> Result<CompiledScene, Error> {
+        Ok(CompiledScene::new(&self.desc, (*self.lower()?).clone()))
+    }
+}
+
+/// Loads a scene: from a file, if the argument ends in `.toml`, `.pbrt` or `.zscene`, has a path separator in it or
 /// is the name of a file; otherwise the built-in scene of this name, which goes before a file of
 /// the same name.
 ///
@@ -80,7 +97,7 @@ pub fn load_scene_with(
     if let Some(builtin) = path.to_str().and_then(builtin::find) {
         let desc = (builtin.build)();
         let (base_dir, warnings) = (PathBuf::new(), Vec::new());
-        return Ok(Scene { desc, base_dir, source: None, warnings });
+        return Ok(Scene { desc, base_dir, source: None, warnings, compiled: None });
     }
     if has_extension(path, "pbrt") {
         let LoadOptions { allow_external, max_bytes } = *options;
@@ -91,11 +108,19 @@ pub fn load_scene_with(
             base_dir: imported.base_dir,
             source: None,
             warnings: imported.warnings.iter().map(ToString::to_string).collect(),
+            compiled: None,
         });
+    }
+    if path.extension().is_some_and(|extension| extension == compiled::EXTENSION) {
+        let compiled = CompiledScene::open(path)?;
+        let desc = compiled.desc().clone();
+        let (base_dir, warnings) = (PathBuf::new(), Vec::new());
+        return Ok(Scene { desc, base_dir, source: None, warnings, compiled: Some(compiled) });
     }
     if is_path(path) {
         let file::LoadedScene { desc, base_dir, source } = file::read(path)?;
-        return Ok(Scene { desc, base_dir, source: Some(source), warnings: Vec::new() });
+        let (source, warnings) = (Some(source), Vec::new());
+        return Ok(Scene { desc, base_dir, source, warnings, compiled: None });
     }
     let name = path.to_string_lossy();
     let guess = match builtin::suggest(&name) {
@@ -104,7 +129,7 @@ pub fn load_scene_with(
     };
     let message = format!(
         "there is no built-in scene '{name}'{guess} run `zrak scenes` for a list, or give the path \
-         of a .toml or .pbrt file"
+         of a .toml, .pbrt or .zscene file"
     );
     Err(Error::new(ErrorKind::UnknownScene, message))
 }
@@ -138,6 +163,32 @@ mod tests {
         let scene = load_scene(&path).unwrap();
         assert_eq!((scene.desc, scene.base_dir), (desc, folder.path().to_owned()));
         assert!(scene.source.is_some());
+    }
+
+    #[test]
+    fn a_compiled_scene_renders_the_same_picture() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("everything.zscene");
+        let mut scene = load_scene("everything").unwrap();
+        (scene.desc.camera.width, scene.desc.camera.height) = (16, 12);
+        scene.compile().unwrap().write_file(&path).unwrap();
+        let mut opened = load_scene(&path).unwrap();
+        let film = |scene: &Scene| {
+            let options =
+                crate::RenderOptions { backend: crate::BackendChoice::Cpu, ..Default::default() };
+            let arena = scene.lower().unwrap();
+            crate::render(arena, 2, &options, &crate::Control::default(), &mut |_| ()).unwrap().film
+        };
+        assert!(film(&opened) == film(&scene));
+        for scene in [&mut opened, &mut scene] {
+            (scene.desc.camera.width, scene.desc.render.seed) = (9, 7);
+        }
+        assert!(film(&opened) == film(&scene));
+        opened.desc.objects = scene.desc.objects;
+        opened.desc.materials = scene.desc.materials;
+        opened.desc.textures = scene.desc.textures;
+        let Err(error) = opened.lower() else { panic!("its objects are in the file") };
+        assert!(error.to_string().contains("compiled scene"), "{error}");
     }
 
     #[test]

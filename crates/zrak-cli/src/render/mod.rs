@@ -21,6 +21,7 @@ Examples:
   zrak render final                               to final.png, on the GPU if there is one
   zrak render final --width 1600 --spp 1000       larger (the aspect ratio stays) and cleaner
   zrak render killeroo.pbrt -o killeroo.exr       a scene for pbrt-v4
+  zrak render crown.zscene                        a scene that `zrak compile` made
   zrak render my.toml -o my.png -o my.exr         one for the screen, one for further work
   zrak render cover --backend cpu --threads 1     on one thread: the same picture
   zrak render cover --json --quiet | jq .times    what it took, for a script
@@ -30,7 +31,7 @@ Ctrl-C stops at once and writes the samples per pixel that are finished; a secon
 /// Options of `zrak render`.
 #[derive(Args, Debug)]
 pub(crate) struct RenderArgs {
-    /// Built-in scene (see `zrak scenes`) or path of a .toml or .pbrt file
+    /// Built-in scene (see `zrak scenes`) or path of a .toml, .pbrt or .zscene file
     scene: PathBuf,
     /// Picture to write, as .png, .jpg, .hdr, .exr or .pfm; may be repeated [default: the scene's name, as .png]
     #[arg(long, short, value_name = "FILE")]

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod compare;
+mod compile;
 mod harness;
 mod help;
 mod interrupt;

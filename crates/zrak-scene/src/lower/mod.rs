@@ -141,7 +141,8 @@ fn build(
     Ok(())
 }
 
-fn globals(desc: &SceneDesc) -> Globals {
+/// What there is one of in a scene.
+pub(crate) fn globals(desc: &SceneDesc) -> Globals {
     let color = |c: Triple| zrak_core::math::Color::from_array(c.map(|x| x as f32));
     let background = match &desc.background {
         BackgroundDesc::Constant { color: c } => Background { bottom: color(*c), top: color(*c) },
