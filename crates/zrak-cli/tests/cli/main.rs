@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod compare;
+mod formats;
 mod harness;
 mod help;
 mod interrupt;
