@@ -52,7 +52,9 @@ pub use zrak_scene::desc::SceneDesc;
 pub use zrak_scene::lower::{LoadedImage, MissingTextures};
 pub use zrak_scene::progress::{LoadProgress, LoadStage};
 
-pub use backends::{BackendChoice, RenderOptions, UnknownBackend, cpu_instruction_set, n_threads};
+pub use backends::{
+    BackendChoice, Devices, RenderOptions, UnknownBackend, cpu_instruction_set, n_threads,
+};
 pub use error::{Error, ErrorKind};
 pub use convert::{Converted, SceneFormat, convert, to_toml};
 pub use load::{GltfOptions, LoadOptions, LoweredScene, Scene, load_scene, load_scene_with};
