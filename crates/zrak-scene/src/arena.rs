@@ -5,6 +5,7 @@
 //! packed, because the GPU does not.
 
 mod check;
+pub mod stats;
 mod storage;
 #[cfg(test)]
 mod tests;
@@ -105,6 +106,12 @@ macro_rules! define_arrays {
             #[must_use]
             pub fn view(&self, globals: Globals) -> SceneView<'_> {
                 SceneView { globals, kinds: Kinds::ALL, $($name: Array::new(&self.$name),)* }
+            }
+
+            /// Bytes of all records.
+            #[must_use]
+            pub fn n_bytes(&self) -> usize {
+                0 $(+ size_of_val(self.$name.as_slice()))*
             }
 
             /// Number of records of each array, by name.

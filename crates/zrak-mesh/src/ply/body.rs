@@ -9,9 +9,12 @@ use crate::{Error, Limits, TriangleMesh};
 /// Vertices or faces that one task decodes.
 const CHUNK: usize = 1 << 16;
 
+/// Most groups of faces.
+const GROUPS_MAX: f64 = 65536.0;
+
 /// Names of the properties of a vertex, in the order of [`Vertices`]' columns; the first of each that
 /// is there counts.
-const COLUMNS: [&[&str]; 12] = [
+const COLUMNS: [&[&str]; N_COLUMNS] = [
     &["x"],
     &["y"],
     &["z"],
@@ -24,10 +27,16 @@ const COLUMNS: [&[&str]; 12] = [
     &["green", "g", "diffuse_green"],
     &["blue", "b", "diffuse_blue"],
     &["alpha", "a"],
+    &["tx"],
+    &["ty"],
+    &["tz"],
+    &["tw"],
 ];
 
+const N_COLUMNS: usize = 16;
+
 /// Which property each column is, if it is there.
-struct Columns([Option<usize>; 12]);
+struct Columns([Option<usize>; N_COLUMNS]);
 
 impl Columns {
     fn of(element: &Element) -> Result<Self, Error> {
@@ -255,7 +264,7 @@ fn vertices(
         })
     };
     let scales = [8, 9, 10, 11].map(scale);
-    let color = |row: &[f64; 12]| -> [f32; 4] {
+    let color = |row: &[f64; N_COLUMNS]| -> [f32; 4] {
         std::array::from_fn(|i| {
             let x = row[8 + i];
             if i == 3 {
@@ -273,12 +282,16 @@ fn vertices(
             }
         })
     };
-    let three =
-        |row: &[f64; 12], at: usize| [row[at] as f32, row[at + 1] as f32, row[at + 2] as f32];
+    let three = |row: &[f64; N_COLUMNS], at: usize| {
+        [row[at] as f32, row[at + 1] as f32, row[at + 2] as f32]
+    };
     mesh.positions = vec![[0.0; 3]; n];
     mesh.normals = vec![[0.0; 3]; if has_normals { n } else { 0 }];
     mesh.uvs = vec![[0.0; 2]; if has_uvs { n } else { 0 }];
     mesh.colors = vec![[0.0; 4]; if has_colors { n } else { 0 }];
+    let has_tangents = columns.has(12..16);
+    let tangent = |row: &[f64; N_COLUMNS]| [12, 13, 14, 15].map(|c| row[c] as f32);
+    mesh.tangents = vec![[0.0; 4]; if has_tangents { n } else { 0 }];
     if let (Some(stride), true) = (fixed_size(element), source.format != Format::Ascii) {
         // Every record at its place: all at once.
         let big = source.format == Format::BigEndian;
@@ -296,7 +309,7 @@ fn vertices(
             return Err(source.cut_off(element, 0));
         };
         source.at += n * stride;
-        let row = |i: usize| -> [f64; 12] {
+        let row = |i: usize| -> [f64; N_COLUMNS] {
             let record = &body[i * stride..(i + 1) * stride];
             std::array::from_fn(|c| match columns.0[c] {
                 Some(p) => {
@@ -328,10 +341,15 @@ fn vertices(
                 *c = color(&row(k * CHUNK + i));
             }
         });
+        mesh.tangents.par_chunks_mut(CHUNK).enumerate().for_each(|(k, chunk)| {
+            for (i, t) in chunk.iter_mut().enumerate() {
+                *t = tangent(&row(k * CHUNK + i));
+            }
+        });
         return Ok(());
     }
     for i in 0..n {
-        let mut row = [0.0; 12];
+        let mut row = [0.0; N_COLUMNS];
         let put = |p: usize, x: f64| {
             if let Some(c) = columns.0.iter().position(|c| *c == Some(p)) {
                 row[c] = x;
@@ -347,6 +365,9 @@ fn vertices(
         }
         if has_colors {
             mesh.colors[i] = color(&row);
+        }
+        if has_tangents {
+            mesh.tangents[i] = tangent(&row);
         }
     }
     Ok(())
@@ -370,6 +391,8 @@ fn faces(
         return Ok(());
     }
     let n_vertices = mesh.positions.len();
+    let group = element.properties.iter().position(|p| p.list.is_none() && p.name == "group");
+    let mut n_groups = 0;
     let mut polygon = Vec::new();
     for i in 0..element.count {
         polygon.clear();
@@ -383,7 +406,13 @@ fn faces(
                 }
             }
         };
-        source.record(element, i, |_, _| {}, add)?;
+        let mut group_of_face = 0.0;
+        let one = |p: usize, x: f64| {
+            if Some(p) == group {
+                group_of_face = x;
+            }
+        };
+        source.record(element, i, one, add)?;
         if let Some(x) = bad {
             return Err(Error::new(format!(
                 "face {i} has a corner {x}, but vertices are counted from 0 to {}",
@@ -391,10 +420,19 @@ fn faces(
             )));
         }
         triangulate(&polygon, &mesh.positions, &mut mesh.triangles);
+        if group.is_some() {
+            if !(group_of_face >= 0.0 && group_of_face < GROUPS_MAX) {
+                let message = format!("face {i} is of group {group_of_face}, not one from 0 on");
+                return Err(Error::new(message));
+            }
+            n_groups = n_groups.max(group_of_face as usize + 1);
+            mesh.face_groups.resize(mesh.triangles.len(), group_of_face as u32);
+        }
         if (mesh.triangles.len() as u64).saturating_mul(12) > limits.max_bytes {
             return Err(Error::new("the triangles take more memory than the limit allows"));
         }
     }
+    mesh.groups.extend((0..n_groups).map(|i| i.to_string()));
     Ok(())
 }
 

@@ -8,8 +8,9 @@ use zrak_core::scene::{MaterialRef, PrimKind, PrimRef};
 use zrak_core::shapes::{MESH_COLORS, MESH_NORMALS, MESH_TANGENTS, MESH_UVS, Mesh, MeshTriangle};
 use zrak_mesh::TriangleMesh;
 
-use super::LowerOptions;
+use super::budget::Budget;
 use super::transform::Transform;
+use super::{LowerOptions, assets};
 use crate::arena::SceneArrays;
 use crate::desc::{MeshDesc, ObjectDesc, SceneDesc, Triple};
 use crate::validate::limits::NUMBER_MAX;
@@ -22,13 +23,15 @@ const SHARED_MIN: usize = 64;
 pub(super) struct Meshes<'a> {
     desc: &'a SceneDesc,
     options: &'a LowerOptions,
+    /// What meshes, and what is placed, may still take.
+    pub(super) budget: &'a Budget,
     /// How often each is placed.
     n_uses: HashMap<&'a str, usize>,
     read: HashMap<&'a str, Arc<TriangleMesh>>,
 }
 
 impl<'a> Meshes<'a> {
-    pub(super) fn new(desc: &'a SceneDesc, options: &'a LowerOptions) -> Self {
+    pub(super) fn new(desc: &'a SceneDesc, options: &'a LowerOptions, budget: &'a Budget) -> Self {
         let mut n_uses = HashMap::new();
         let mut lists: Vec<&[ObjectDesc]> = vec![&desc.objects];
         lists.extend(desc.prototypes.values().map(Vec::as_slice));
@@ -43,7 +46,7 @@ impl<'a> Meshes<'a> {
                 }
             }
         }
-        Self { desc, options, n_uses, read: HashMap::new() }
+        Self { desc, options, budget, n_uses, read: HashMap::new() }
     }
 
     /// Whether a mesh is placed more than once and large enough to be stored once for all.
@@ -80,6 +83,7 @@ impl<'a> Meshes<'a> {
             Some(mesh) => Arc::clone(mesh),
             None => {
                 let mesh = self.load(desc).map_err(|message| problem(message, None))?;
+                self.options.progress.add(1);
                 if self.n_uses.get(name).is_some_and(|&n| n > 1) {
                     self.read.insert(key, Arc::clone(&mesh));
                 }
@@ -117,12 +121,11 @@ impl<'a> Meshes<'a> {
                 }))
             }
             MeshDesc::File { path } => {
-                let path = self.options.base_dir.join(path);
-                let limits = zrak_mesh::Limits::default();
-                match zrak_mesh::ply::read(&path, &limits) {
-                    Ok(mesh) => Ok(Arc::new(mesh)),
-                    Err(error) => Err(error.to_string()),
-                }
+                let path = assets::resolve(path, self.options).map_err(|e| e.to_string())?;
+                let limits = zrak_mesh::Limits { max_bytes: self.budget.left() };
+                let mesh = zrak_mesh::ply::read(&path, &limits).map_err(|e| e.to_string())?;
+                self.budget.spend(mesh.n_bytes() as u64)?;
+                Ok(Arc::new(mesh))
             }
         }
     }
