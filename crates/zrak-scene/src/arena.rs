@@ -59,12 +59,13 @@ macro_rules! define_arrays {
                 (spans, end)
             }
 
-            fn copy_into(&self, spans: &Spans, bytes: &mut [u8]) {
-                $({
-                    let source: &[u8] = bytemuck::cast_slice(&self.$name);
-                    let start = spans.$name.offset as usize * OFFSET_UNIT;
-                    bytes[start..start + source.len()].copy_from_slice(source);
-                })*
+            /// Appends the arrays one after the other, and frees each when it is done: of large scenes
+            /// there must not be two copies.
+            fn move_into(self, chunks: &mut Vec<Chunk>) {
+                $(
+                    append(chunks, bytemuck::cast_slice(&self.$name));
+                    drop(self.$name);
+                )*
             }
         }
 
@@ -100,6 +101,17 @@ macro_rules! define_arrays {
 
 for_each_scene_array!(define_arrays);
 
+/// Appends bytes, and zeros up to the next multiple of the alignment.
+fn append(chunks: &mut Vec<Chunk>, bytes: &[u8]) {
+    let (whole, rest) = bytes.as_chunks::<ARENA_ALIGNMENT>();
+    chunks.extend(whole.iter().map(|bytes| Chunk(*bytes)));
+    if !rest.is_empty() {
+        let mut last = Chunk::zeroed();
+        last.0[..rest.len()].copy_from_slice(rest);
+        chunks.push(last);
+    }
+}
+
 /// A scene ready to render.
 #[derive(Clone)]
 pub struct SceneArena {
@@ -113,7 +125,7 @@ impl SceneArena {
     ///
     /// # Errors
     /// If a handle leads out of bounds, or the arrays are larger than an arena can be (64 GiB).
-    pub fn pack(globals: Globals, arrays: &SceneArrays) -> Result<Self, Corrupt> {
+    pub fn pack(globals: Globals, arrays: SceneArrays) -> Result<Self, Corrupt> {
         if let Some((name, len)) = arrays.lens().into_iter().find(|l| u32::try_from(l.1).is_err()) {
             return Err(Corrupt::new(format!("{len} {name} are more than an array can hold")));
         }
@@ -121,8 +133,8 @@ impl SceneArena {
         if size > u32::MAX as usize * OFFSET_UNIT {
             return Err(Corrupt::new(format!("{size} bytes are more than an arena can hold")));
         }
-        let mut chunks = vec![Chunk::zeroed(); size / ARENA_ALIGNMENT];
-        arrays.copy_into(&spans, bytemuck::cast_slice_mut(&mut chunks));
+        let mut chunks = Vec::with_capacity(size / ARENA_ALIGNMENT);
+        arrays.move_into(&mut chunks);
         let arena = Self { globals, spans, chunks };
         check::check(&arena.view())?;
         Ok(arena)

@@ -58,7 +58,7 @@ impl Scene {
     }
 }
 
-/// Loads a scene: from a file, if the argument ends in `.toml` or `.pbrt`, has a path separator in it or
+/// Loads a scene: from a file, if the argument ends in `.toml`, `.pbrt` or `.obj`, has a path separator in it or
 /// is the name of a file; otherwise the built-in scene of this name, which goes before a file of
 /// the same name.
 ///
@@ -93,6 +93,17 @@ pub fn load_scene_with(
             warnings: imported.warnings.iter().map(ToString::to_string).collect(),
         });
     }
+    if has_extension(path, "obj") {
+        let LoadOptions { allow_external, max_bytes } = *options;
+        let options = zrak_obj::ImportOptions { allow_external, max_bytes, ..Default::default() };
+        let imported = zrak_obj::import(path, &options)?;
+        return Ok(Scene {
+            desc: imported.desc,
+            base_dir: imported.base_dir,
+            source: None,
+            warnings: imported.warnings.iter().map(ToString::to_string).collect(),
+        });
+    }
     if is_path(path) {
         let file::LoadedScene { desc, base_dir, source } = file::read(path)?;
         return Ok(Scene { desc, base_dir, source: Some(source), warnings: Vec::new() });
@@ -104,7 +115,7 @@ pub fn load_scene_with(
     };
     let message = format!(
         "there is no built-in scene '{name}'{guess} run `zrak scenes` for a list, or give the path \
-         of a .toml or .pbrt file"
+         of a .toml, .pbrt or .obj file"
     );
     Err(Error::new(ErrorKind::UnknownScene, message))
 }

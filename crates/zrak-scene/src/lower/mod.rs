@@ -91,12 +91,13 @@ pub fn lower_with_warnings(
     environment::lower(&desc.background, &mut textures, &mut arrays);
     textures.read_images(options, &mut arrays, &mut warnings)?;
     let mut meshes = meshes::Meshes::new(desc, options);
+    meshes.read_files();
     let objects = objects::lower(desc, &materials, &mut meshes, &mut arrays)?;
     drop(meshes);
     let globals = globals(desc);
     let whole = |message: String| Problem { path: KeyPath::default(), message, help: None };
     build(objects, globals, &mut arrays).map_err(|message| vec![whole(message)])?;
-    match SceneArena::pack(globals, &arrays) {
+    match SceneArena::pack(globals, arrays) {
         Ok(arena) => Ok((arena, warnings)),
         Err(corrupt) => Err(vec![whole(corrupt.to_string())]),
     }
