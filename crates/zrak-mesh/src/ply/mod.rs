@@ -7,7 +7,9 @@
 //! floating-point type are linear.
 
 mod body;
+mod faces;
 mod header;
+mod vertices;
 mod write;
 
 #[cfg(test)]
@@ -15,6 +17,7 @@ mod tests;
 
 use std::path::Path;
 
+pub(crate) use vertices::linear;
 pub use write::write;
 
 use crate::{Error, Limits, TriangleMesh, read_file};
@@ -25,7 +28,7 @@ use crate::{Error, Limits, TriangleMesh, read_file};
 /// If it cannot be read, is not a PLY file, is damaged, or larger than the limits allow.
 pub fn read(path: &Path, limits: &Limits) -> Result<TriangleMesh, Error> {
     let bytes = read_file(path, limits)?;
-    parse(&bytes, limits).map_err(|error| Error::new(format!("{}: {error}", path.display())))
+    parse(&bytes, limits).map_err(|error| error.in_file(path.display()))
 }
 
 /// The mesh in the bytes of a file. Triangles without an area are dropped.

@@ -129,6 +129,7 @@ pub fn lower_with_warnings(
     let images = textures.read_images(options, &budget, &mut arrays, &mut warnings)?;
     progress.begin(LoadStage::Objects, desc.meshes.len() as u64);
     let mut meshes = meshes::Meshes::new(desc, options, &budget);
+    meshes.read_files();
     let objects = objects::lower(desc, &materials, &mut meshes, &mut arrays)?;
     drop(meshes);
     let globals = globals(desc);
@@ -140,7 +141,7 @@ pub fn lower_with_warnings(
     }
     build(objects, globals, &mut arrays, progress).map_err(|message| vec![whole(message)])?;
     progress.begin(LoadStage::Packing, 0);
-    match SceneArena::pack(globals, &arrays) {
+    match SceneArena::pack(globals, arrays) {
         Ok(arena) => Ok(Lowered { arena, warnings, images }),
         Err(corrupt) => Err(vec![whole(corrupt.to_string())]),
     }

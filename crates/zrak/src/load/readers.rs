@@ -23,18 +23,17 @@ pub(super) struct Reader {
 }
 
 /// All of them.
-pub(super) const READERS: [Reader; 4] = [
+pub(super) const READERS: [Reader; 5] = [
     Reader { extensions: &["toml"], has_choice: false, read: read_toml },
     Reader { extensions: &["pbrt", "pbrt.gz"], has_choice: false, read: read_pbrt },
     Reader { extensions: &["glb", "gltf"], has_choice: true, read: read_gltf },
+    Reader { extensions: &["obj", "obj.gz"], has_choice: false, read: read_obj },
     Reader { extensions: &[compiled::EXTENSION], has_choice: false, read: read_compiled },
 ];
 
 /// Extensions of files that hold scenes or models, but that nothing here reads.
-const UNREAD: [&str; 14] = [
-    "3ds", "abc", "blend", "dae", "fbx", "ma", "max", "obj", "ply", "stl", "usd", "usda", "usdc",
-    "xml",
-];
+const UNREAD: [&str; 13] =
+    ["3ds", "abc", "blend", "dae", "fbx", "ma", "max", "ply", "stl", "usd", "usda", "usdc", "xml"];
 
 /// The reader for a file of this name.
 pub(super) fn of_path(path: &Path) -> Option<&'static Reader> {
@@ -104,6 +103,15 @@ fn read_gltf(path: &Path, options: &LoadOptions) -> Result<Scene, Error> {
     let shown = path.display();
     scene.warnings =
         imported.warnings.iter().map(|warning| format!("{shown}: {warning}")).collect();
+    Ok(scene)
+}
+
+fn read_obj(path: &Path, options: &LoadOptions) -> Result<Scene, Error> {
+    let LoadOptions { allow_external, max_bytes, .. } = *options;
+    let import = zrak_obj::ImportOptions { allow_external, max_bytes, ..Default::default() };
+    let imported = zrak_obj::import(path, &import)?;
+    let mut scene = plain(imported.desc, imported.base_dir, path, options);
+    scene.warnings = imported.warnings.iter().map(ToString::to_string).collect();
     Ok(scene)
 }
 
