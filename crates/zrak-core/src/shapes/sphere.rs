@@ -73,39 +73,24 @@ impl MovingSphere {
 }
 
 /// Both roots' ingredients for a ray against a sphere.
-struct Roots {
+pub(super) struct Roots {
     /// Squared length of the direction.
     a: f32,
     /// From the origin to the point nearest the centre, times `a`.
-    b: f32,
+    pub(super) b: f32,
     /// Signed power of the origin: below zero inside.
-    c: f32,
+    pub(super) c: f32,
     /// From that point to either root, times `a`.
     s: f32,
 }
 
 impl Roots {
-    /// Root behind the nearest point, for `b` + `s` > 0.
     #[inline(always)]
-    fn far(&self) -> f32 {
-        // Either form is exact in the reals; take the one that adds.
-        if self.b >= 0.0 { (self.b + self.s) / self.a } else { self.c / (self.b - self.s) }
-    }
-
-    /// Root before the nearest point, for an origin outside and `b` > 0.
-    #[inline(always)]
-    fn near(&self) -> f32 {
-        self.c / (self.b + self.s)
-    }
-}
-
-impl Sphere {
-    #[inline(always)]
-    fn roots(&self, ray: &Ray) -> Option<Roots> {
-        let oc = self.center - ray.o;
+    pub(super) fn of(center: Vec3, radius: f32, ray: &Ray) -> Option<Self> {
+        let oc = center - ray.o;
         let a = dot(ray.d, ray.d);
         let b = dot(ray.d, oc);
-        let r2 = self.radius * self.radius;
+        let r2 = radius * radius;
         // From the nearest point of the line to the centre, times a, so that a miss needs no
         // division.
         let l = oc * a - ray.d * b;
@@ -113,7 +98,27 @@ impl Sphere {
         if discriminant < 0.0 {
             return None;
         }
-        Some(Roots { a, b, c: dot(oc, oc) - r2, s: sqrt(discriminant / a) })
+        Some(Self { a, b, c: dot(oc, oc) - r2, s: sqrt(discriminant / a) })
+    }
+
+    /// Root behind the nearest point, for `b` + `s` > 0.
+    #[inline(always)]
+    pub(super) fn far(&self) -> f32 {
+        // Either form is exact in the reals; take the one that adds.
+        if self.b >= 0.0 { (self.b + self.s) / self.a } else { self.c / (self.b - self.s) }
+    }
+
+    /// Root before the nearest point, for an origin outside and `b` > 0.
+    #[inline(always)]
+    pub(super) fn near(&self) -> f32 {
+        self.c / (self.b + self.s)
+    }
+}
+
+impl Sphere {
+    #[inline(always)]
+    fn roots(&self, ray: &Ray) -> Option<Roots> {
+        Roots::of(self.center, self.radius, ray)
     }
 }
 

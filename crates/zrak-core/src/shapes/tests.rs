@@ -1,8 +1,11 @@
 //! Tests.
 
 mod boxes;
+mod curve;
 mod instance;
+mod patch;
 mod quad;
+mod round;
 mod spawn;
 mod sphere;
 mod triangle;

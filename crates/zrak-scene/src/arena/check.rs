@@ -7,7 +7,10 @@ use zrak_core::media::{NO_PLACEMENT, VACUUM};
 use zrak_core::scene::{
     MaterialKind, MaterialRef, PrimKind, PrimRef, SceneView, TextureKind, TextureRef,
 };
-use zrak_core::shapes::{Instance, MESH_COLORS, MESH_NORMALS, MESH_TANGENTS, MESH_UVS, NO_MOTION};
+use zrak_core::shapes::{
+    CURVE_RIBBON, Instance, MAX_HALVINGS, MESH_COLORS, MESH_NORMALS, MESH_TANGENTS, MESH_UVS,
+    NO_MOTION,
+};
 use zrak_core::textures::{
     ImageTexture, MAX_LEVELS, N_OPS, NO_MAPPING, OP_FRACTAL, OP_IMAGE, OP_NOISE, TEXELS_LINEAR,
     TEXELS_SRGB8, TEXELS_UNORM16, words_per_texel,
@@ -61,6 +64,20 @@ pub(super) fn check(scene: &SceneView) -> Check {
     }
     for cylinder in records(&scene.cylinders) {
         check_material(scene, cylinder.material)?;
+    }
+    for sphere in records(&scene.partial_spheres) {
+        check_material(scene, sphere.material)?;
+    }
+    for curve in records(&scene.curves) {
+        check_material(scene, curve.material)?;
+        require(curve.form <= CURVE_RIBBON, || format!("a curve of form {}", curve.form))?;
+        require(curve.form != CURVE_RIBBON || curve.ribbon < scene.ribbons.len(), || {
+            format!("no normals {} of a ribbon", curve.ribbon)
+        })?;
+        // A ray walks over all pieces.
+        require(curve.n_halvings <= MAX_HALVINGS, || {
+            format!("a curve that is halved {} times", curve.n_halvings)
+        })?;
     }
     for mesh in records(&scene.meshes) {
         check_material(scene, mesh.material)?;
@@ -191,6 +208,9 @@ fn check_prim(scene: &SceneView, prim: PrimRef) -> Check {
         Some(PrimKind::MeshTriangle) => scene.mesh_triangles.len(),
         Some(PrimKind::Disk) => scene.disks.len(),
         Some(PrimKind::Cylinder) => scene.cylinders.len(),
+        Some(PrimKind::PartialSphere) => scene.partial_spheres.len(),
+        Some(PrimKind::MeshPatch) => scene.mesh_patches.len(),
+        Some(PrimKind::Curve) => scene.curves.len(),
         Some(PrimKind::Instance) => scene.instances.len(),
         Some(PrimKind::Medium) => scene.media.len(),
         Some(PrimKind::Node) | None => 0,
@@ -280,24 +300,32 @@ fn check_trees<const N: usize>(
     Ok(())
 }
 
-/// Checks that triangles lead to vertices, and vertices to all that their meshes say they have.
+/// Checks that triangles and patches lead to vertices, and vertices to all that their meshes say they
+/// have.
 fn check_meshes(scene: &SceneView) -> Check {
-    let n_vertices = scene.positions.len();
     for triangle in records(&scene.mesh_triangles) {
-        require(triangle.mesh < scene.meshes.len(), || format!("no mesh {}", triangle.mesh))?;
-        let mesh = scene.meshes.get(triangle.mesh);
-        for v in triangle.vertices {
-            require(v < n_vertices, || format!("no vertex {v}"))?;
-            for (flag, offset, len) in [
-                (MESH_NORMALS, mesh.normal_offset, scene.normals.len()),
-                (MESH_UVS, mesh.uv_offset, scene.uvs.len()),
-                (MESH_TANGENTS, mesh.tangent_offset, scene.tangents.len()),
-                (MESH_COLORS, mesh.color_offset, scene.colors.len()),
-            ] {
-                require(mesh.flags & flag == 0 || v.wrapping_add(offset) < len, || {
-                    format!("vertex {v} lacks an attribute of its mesh")
-                })?;
-            }
+        check_face(scene, triangle.mesh, triangle.vertices)?;
+    }
+    for patch in records(&scene.mesh_patches) {
+        check_face(scene, patch.mesh, patch.vertices)?;
+    }
+    Ok(())
+}
+
+fn check_face<const N: usize>(scene: &SceneView, mesh: u32, vertices: [u32; N]) -> Check {
+    require(mesh < scene.meshes.len(), || format!("no mesh {mesh}"))?;
+    let mesh = scene.meshes.get(mesh);
+    for v in vertices {
+        require(v < scene.positions.len(), || format!("no vertex {v}"))?;
+        for (flag, offset, len) in [
+            (MESH_NORMALS, mesh.normal_offset, scene.normals.len()),
+            (MESH_UVS, mesh.uv_offset, scene.uvs.len()),
+            (MESH_TANGENTS, mesh.tangent_offset, scene.tangents.len()),
+            (MESH_COLORS, mesh.color_offset, scene.colors.len()),
+        ] {
+            require(mesh.flags & flag == 0 || v.wrapping_add(offset) < len, || {
+                format!("vertex {v} lacks an attribute of its mesh")
+            })?;
         }
     }
     Ok(())

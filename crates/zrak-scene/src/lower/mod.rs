@@ -5,10 +5,12 @@
 
 mod assets;
 mod camera;
+mod curves;
 mod environment;
 mod lights;
 mod meshes;
 mod objects;
+mod patches;
 mod sky;
 mod surfaces;
 mod textures;

@@ -16,7 +16,16 @@ use crate::desc::{
 };
 
 fn sphere(center: Triple, radius: f64, transform: Vec<TransformStep>) -> ObjectDesc {
-    ObjectDesc::Sphere { center, center_end: None, radius, material: "m".to_owned(), transform }
+    ObjectDesc::Sphere {
+        center,
+        center_end: None,
+        radius,
+        z_min: None,
+        z_max: None,
+        phi_max_deg: None,
+        material: "m".to_owned(),
+        transform,
+    }
 }
 
 fn cuboid(min: Triple, max: Triple, transform: Vec<TransformStep>) -> ObjectDesc {
