@@ -111,9 +111,9 @@ pub(crate) struct BackendArgs {
     /// Threads of the processor [default: all cores]
     #[arg(long, short = 'j', value_name = "N", value_parser = parse_threads)]
     pub(crate) threads: Option<usize>,
-    /// Number of the CUDA device (see `zrak devices`)
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub(crate) device: u32,
+    /// Numbers of the CUDA devices with commas between them, or `all` (see `zrak devices`)
+    #[arg(long, value_name = "N", default_value_t = zrak::Devices::one(0))]
+    pub(crate) device: zrak::Devices,
     /// Threads of a CUDA block along x and y
     #[arg(long, value_name = "WxH", default_value_t = Block::default())]
     pub(crate) block: Block,
@@ -129,7 +129,7 @@ impl BackendArgs {
             backend: self.backend.into(),
             threads: self.threads,
             tree: self.tree.into(),
-            device: self.device,
+            devices: self.device,
             block: self.block.0,
         }
     }
@@ -142,8 +142,10 @@ pub(crate) enum BackendName {
     Auto,
     /// The processor
     Cpu,
-    /// An NVIDIA GPU, or an error
+    /// NVIDIA GPUs, or an error
     Cuda,
+    /// NVIDIA GPUs and the processor together, or an error
+    Hybrid,
 }
 
 impl From<BackendName> for BackendChoice {
@@ -152,6 +154,7 @@ impl From<BackendName> for BackendChoice {
             BackendName::Auto => Self::Auto,
             BackendName::Cpu => Self::Cpu,
             BackendName::Cuda => Self::Cuda,
+            BackendName::Hybrid => Self::Hybrid,
         }
     }
 }

@@ -349,8 +349,10 @@ pub struct Globals {
     pub seed_hi: u32,
     /// Index of the medium that the camera is in, or [`crate::media::VACUUM`].
     pub camera_medium: u32,
+    /// Number of ray segments after which a path that carries little may be ended by chance.
+    pub rr_depth: u32,
     /// Nothing.
-    pub _pad: [u32; 2],
+    pub _pad: u32,
 }
 
 const _: () = assert!(size_of::<Globals>().is_multiple_of(16));

@@ -49,7 +49,9 @@ pub use zrak_render::{BackendInfo, Control, Film, Times};
 pub use zrak_scene::arena::SceneArena;
 pub use zrak_scene::desc::SceneDesc;
 
-pub use backends::{BackendChoice, RenderOptions, UnknownBackend, cpu_instruction_set, n_threads};
+pub use backends::{
+    BackendChoice, Devices, RenderOptions, UnknownBackend, cpu_instruction_set, n_threads,
+};
 pub use error::{Error, ErrorKind};
 pub use load::{LoadOptions, Scene, load_scene, load_scene_with};
 pub use render::{RenderOutput, render};

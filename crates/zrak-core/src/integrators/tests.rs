@@ -98,3 +98,39 @@ fn backgrounds_blend_by_height_and_constants_are_exact() {
     let sum = render_pixel(&view, BruteForce { prims: Array::new(&[]) }, 0, 0, 0, 9);
     assert_eq!((sum.mean(), sum.n_rays), (Color::grey(0.1), 9));
 }
+
+#[test]
+fn roulette_keeps_the_mean_and_saves_rays() {
+    // In a box that reflects half of the light, and with a background that nobody sees: the emission of
+    // the sphere's surroundings comes back 1 + 1/2 + 1/4 + ... times.
+    let scene = scene(0.5, 1.0);
+    let (n, mut means, mut rays) = (40_000, [0.0; 2], [0; 2]);
+    let mut squares = [0.0; 2];
+    for (k, rr_depth) in [u32::MAX, 1].into_iter().enumerate() {
+        let mut view = scene.view();
+        view.globals.rr_depth = rr_depth;
+        for i in 0..n {
+            let sum = pixel(&view, i, 1);
+            let x = f64::from(sum.mean().r);
+            means[k] += x / f64::from(n);
+            squares[k] += x * x / f64::from(n);
+            rays[k] += sum.n_rays;
+        }
+    }
+    let variance = squares[0] - means[0] * means[0] + squares[1] - means[1] * means[1];
+    let z = (means[1] - means[0]) / (variance / f64::from(n)).sqrt();
+    assert!(z.abs() < 4.0, "{means:?}, z = {z}");
+    assert!(rays[1] < rays[0], "{rays:?}");
+}
+
+#[test]
+fn roulette_leaves_paths_alone_that_lose_nothing() {
+    let scene = scene(1.0, 0.75);
+    let mut view = scene.view();
+    for i in 0..200 {
+        view.globals.rr_depth = u32::MAX;
+        let without = pixel(&view, i, 1);
+        view.globals.rr_depth = 1;
+        assert_eq!(pixel(&view, i, 1), without);
+    }
+}

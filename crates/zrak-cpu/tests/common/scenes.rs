@@ -26,7 +26,7 @@ pub fn scene(size: [u32; 2], sky: f64) -> SceneDesc {
             shutter_close_s: 1.0,
             ..CameraDesc::default()
         },
-        render: RenderDesc { samples_per_pixel: 1, max_depth: 50, seed: 1 },
+        render: RenderDesc { samples_per_pixel: 1, seed: 1, ..RenderDesc::default() },
         background: BackgroundDesc::Constant { color: [sky; 3] },
         textures: BTreeMap::new(),
         materials: BTreeMap::new(),

@@ -30,7 +30,8 @@ fn globals() -> Globals {
         seed_lo: 1,
         seed_hi: 2,
         camera_medium: 0,
-        _pad: [0; 2],
+        rr_depth: 2,
+        _pad: 0,
     }
 }
 

@@ -19,7 +19,7 @@ pub(super) fn scene(
         name: name.to_owned(),
         description: summary.to_owned(),
         camera,
-        render: RenderDesc { samples_per_pixel, max_depth: 50, seed: 0 },
+        render: RenderDesc { samples_per_pixel, ..RenderDesc::default() },
         background,
         ..SceneDesc::default()
     }

@@ -162,6 +162,7 @@ fn globals(desc: &SceneDesc) -> Globals {
         seed_lo: desc.render.seed as u32,
         seed_hi: (desc.render.seed >> 32) as u32,
         camera_medium: surfaces::medium_index(desc, desc.camera.medium.as_deref()),
-        _pad: [0; 2],
+        rr_depth: desc.render.rr_depth,
+        _pad: 0,
     }
 }

@@ -281,7 +281,8 @@ prop_compose! {
         materials in btree_map(name(), material(), 0..4),
         objects in vec(object(), 0..4),
     ) -> SceneDesc {
-        let render = RenderDesc { samples_per_pixel, max_depth, seed };
+        let rr_depth = max_depth / 2;
+        let render = RenderDesc { samples_per_pixel, max_depth, rr_depth, seed };
         SceneDesc { format: 1, name, description, camera, render, background, textures, materials, objects, ..SceneDesc::default() }
     }
 }
