@@ -14,6 +14,7 @@
 
 mod camera;
 mod color;
+mod curves;
 mod error;
 mod lexer;
 mod lights;

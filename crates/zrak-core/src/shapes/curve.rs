@@ -20,6 +20,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use super::sphere::facing;
 use crate::interaction::SurfaceInteraction;
 use crate::math::{Bounds, Vec3, abs, cross, dot, gamma, lerp, max, min, sin, sqrt, vec3};
 use crate::ray::Ray;
@@ -121,6 +122,8 @@ struct Seen {
     is_ribbon: bool,
     /// Bound of the error of a coordinate.
     error: f32,
+    /// Whether all of it is ahead of the ray's origin for certain.
+    is_ahead: bool,
 }
 
 /// A point of the cubic with these control points, and its derivative.
@@ -130,6 +133,12 @@ fn evaluate([a, b, c, d]: [Vec3; 4], u: f32) -> (Vec3, Vec3) {
     let (ab, bc, cd) = (mix(a, b), mix(b, c), mix(c, d));
     let (abc, bcd) = (mix(ab, bc), mix(bc, cd));
     (mix(abc, bcd), (bcd - abc) * 3.0)
+}
+
+/// Two places around u, for differences.
+#[inline(always)]
+fn around(u: f32) -> (f32, f32) {
+    (max(u - 1.0 / 256.0, 0.0), min(u + 1.0 / 256.0, 1.0))
 }
 
 /// The polar form of the cubic: its control points between u0 and u1 are those at (u0, u0, u0),
@@ -157,6 +166,15 @@ impl Seen {
     #[inline(always)]
     fn radius(&self, u: f32) -> f32 {
         0.5 * lerp(u, self.widths[0], self.widths[1])
+    }
+
+    /// Change with u of the point at the distance `across` from the axis, where that of the axis is `dc`:
+    /// the lines across turn.
+    #[inline(always)]
+    fn along(&self, u: f32, dc: Vec3, across: f32) -> Vec3 {
+        let (before, after) = around(u);
+        let at = |u: f32| unit_or(self.rung(u).b, Vec3::ZERO);
+        dc + (at(after) - at(before)) * (across / (after - before))
     }
 
     /// Whether the ray may meet the part from `u0` to `u1` before `z_best`.
@@ -215,15 +233,22 @@ impl Seen {
         let residual = abs(p.x) + abs(p.y);
         let radius = self.radius(u);
         let across = s * b.length();
-        // For a ribbon, an error of the place shows in z by the slope of the surface.
-        let z_error = if self.is_ribbon {
-            let n = cross(dc, b);
-            (self.error + residual) * (1.0 + (abs(n.x) + abs(n.y)) / abs(n.z))
+        let z_error = if self.is_ribbon && !self.is_ahead {
+            // An error of the place shows in z by the slope of the surface, and that is known to within
+            // the errors of what spans it.
+            let n = cross(self.along(u, dc, across), b);
+            let size = |v: Vec3| abs(v.x) + abs(v.y) + abs(v.z);
+            let steep = abs(n.z) - 16.0 * self.error * (size(dc) + size(b));
+            let slope = (abs(n.x) + abs(n.y)) / max(steep, 0.0);
+            (self.error + residual) * (1.0 + slope)
         } else {
             self.error
         };
         // False for NaN.
-        if radius > 0.0 && abs(across) <= radius && residual <= radius + self.error && p.z > z_error
+        if radius > 0.0
+            && abs(across) <= radius
+            && residual <= radius * (1.0 / 256.0) + 8.0 * self.error
+            && (p.z > z_error || self.is_ahead)
         {
             Some(CurveHit { t: p.z, u, side: across / radius })
         } else {
@@ -279,11 +304,12 @@ impl Curve {
         let mut along = dc;
         if is_ribbon {
             // The lines across turn: that tilts the surface away from the axis.
-            let (before, after) = (max(u - 1.0 / 256.0, 0.0), min(u + 1.0 / 256.0, 1.0));
+            let (before, after) = around(u);
             let at = |u: f32| across(u, evaluate(self.points, u).1);
             along = dc + (at(after) - at(before)) * (radius * side / (after - before));
         }
         let n = unit_or(cross(b, along), against);
+        let toward = |n: Vec3| facing(ray, n, true);
         let abs_points = self.points.map(Vec3::abs);
         let rounding = (evaluate(abs_points, u).0 + arm.abs()) * gamma(16);
         let (p, n, p_error) = match self.form {
@@ -295,10 +321,13 @@ impl Curve {
             CURVE_CYLINDER => {
                 // From the axis, rays leave to the surface.
                 let round = n * sqrt(max(1.0 - side * side, 0.0)) + b * side;
-                let n = unit_or(round, n);
+                let n = toward(unit_or(round, n));
                 (c, n, rounding + n.abs() * (radius * SLACK))
             }
-            _ => (c + arm, n, rounding + n.abs() * (radius * SLACK)),
+            _ => {
+                let n = toward(n);
+                (c + arm, n, rounding + n.abs() * (radius * SLACK))
+            }
         };
         // From the part's u to the segment's.
         let length = self.u[1] - self.u[0];
@@ -340,6 +369,9 @@ fn hit_curve(curve: &Curve, normals: &Ribbon, ray: &Ray) -> Option<CurveHit> {
     let reach = |p: Vec3| max(abs(p.x), max(abs(p.y), abs(p.z)));
     let [a, b, c, d] = points;
     let far = max(max(reach(a), reach(b)), max(reach(c), reach(d)));
+    let error = gamma(16) * far;
+    let nearest = min(min(a.z, b.z), min(c.z, d.z));
+    let radius = 0.5 * max(curve.widths[0], curve.widths[1]);
     let is_ribbon = curve.form == CURVE_RIBBON;
     let seen = Seen {
         points,
@@ -351,7 +383,8 @@ fn hit_curve(curve: &Curve, normals: &Ribbon, ray: &Ray) -> Option<CurveHit> {
             Ribbon { start: vec3(0.0, 0.0, -1.0), ..*normals }
         },
         is_ribbon,
-        error: gamma(16) * far,
+        error,
+        is_ahead: nearest - radius > error,
     };
     let n_halvings = curve.n_halvings;
     let mut best = CurveHit { t: f32::INFINITY, u: 0.0, side: 0.0 };

@@ -9,7 +9,7 @@ use core::f32::consts::TAU;
 use bytemuck::{Pod, Zeroable};
 
 use super::disk::angle;
-use super::sphere::Roots;
+use super::sphere::{Roots, facing};
 use super::{Shape, Shutter};
 use crate::interaction::SurfaceInteraction;
 use crate::math::{Bounds, Vec3, abs, atan2, gamma, max, min, sqrt, vec3};
@@ -48,6 +48,27 @@ impl PartialSphere {
             && p.z <= self.z_max
             && (self.phi_max >= TAU || angle(p.y, p.x) <= self.phi_max)
     }
+
+    /// Where a ray meets it, and whether from outside.
+    #[inline(always)]
+    fn hit(&self, ray: &Ray) -> Option<(f32, bool)> {
+        let roots = Roots::of(Vec3::ZERO, self.radius, ray)?;
+        if roots.c > 0.0 {
+            if roots.b <= 0.0 {
+                return None;
+            }
+            let near = roots.near();
+            if self.has(ray.at(near)) {
+                return Some((near, true));
+            }
+        }
+        let far = roots.far();
+        if far > 0.0 && far < f32::INFINITY && self.has(ray.at(far)) {
+            Some((far, false))
+        } else {
+            None
+        }
+    }
 }
 
 impl Shape for PartialSphere {
@@ -71,23 +92,13 @@ impl Shape for PartialSphere {
 
     #[inline(always)]
     fn intersect(&self, ray: &Ray) -> Option<f32> {
-        let roots = Roots::of(Vec3::ZERO, self.radius, ray)?;
-        if roots.c > 0.0 {
-            if roots.b <= 0.0 {
-                return None;
-            }
-            let near = roots.near();
-            if self.has(ray.at(near)) {
-                return Some(near);
-            }
-        }
-        let far = roots.far();
-        if far > 0.0 && far < f32::INFINITY && self.has(ray.at(far)) { Some(far) } else { None }
+        self.hit(ray).map(|(t, _)| t)
     }
 
     #[inline(always)]
     fn interaction(&self, ray: &Ray, t: f32) -> SurfaceInteraction {
-        let n = ray.at(t).normalized();
+        let is_outside = self.hit(ray).is_none_or(|(_, is_outside)| is_outside);
+        let n = facing(ray, ray.at(t).normalized(), is_outside);
         let p = n * self.radius;
         // As for whole spheres.
         let p_error = p.abs() * gamma(9);

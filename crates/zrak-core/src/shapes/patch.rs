@@ -4,7 +4,7 @@
 //! the ray runs along z from the origin, as for triangles, a hit is a root of the two equations
 //! S_x(u, v) = S_y(u, v) = 0: the origin lies on the line from A(u) = S(u, 0) to B(u) = S(u, 1), so
 //! A(u) x B(u) = 0, which is quadratic in u. (Reshetov, *Cool Patches*, Ray Tracing Gems, 2019, section
-//! 8, solves the same quadratic in space.) A step of Newton's method for both equations then takes away
+//! 8, solves the same quadratic in space.) Newton's method for both equations then takes away
 //! what the quadratic lost by cancellation, and what is left of them, with a bound of their rounding,
 //! bounds the errors of u, v and t.
 //!
@@ -100,24 +100,26 @@ impl Seen {
     /// The hit near (`u`, `v`).
     #[inline(always)]
     fn hit_near(&self, u: f32, v: f32) -> Option<PatchHit> {
-        // One step of Newton's method.
-        let (r, ru, rv) = self.at(u, v);
-        let det = ru.cross(rv);
-        let inv_det = if det == 0.0 { 0.0 } else { 1.0 / det };
-        let u = u - r.cross(rv) * inv_det;
-        let v = v - ru.cross(r) * inv_det;
-        // False for NaN.
-        if !(abs(u) + abs(v) < 4.0) {
-            return None;
+        let (mut u, mut v) = (u, v);
+        let (mut r, mut ru, mut rv) = self.at(u, v);
+        for _ in 0..2 {
+            let det = ru.cross(rv);
+            let inv_det = if det == 0.0 { 0.0 } else { 1.0 / det };
+            let (nu, nv) = (u - r.cross(rv) * inv_det, v - ru.cross(r) * inv_det);
+            let (nr, nru, nrv) = self.at(nu, nv);
+            // On the outline, where the two roots are one, a step may lead astray. False for NaN.
+            if nr.size() < r.size() {
+                (u, v, r, ru, rv) = (nu, nv, nr, nru, nrv);
+            }
         }
-        let (r, ru, rv) = self.at(u, v);
         let det = abs(ru.cross(rv));
-        if det == 0.0 {
+        let residual = r.size();
+        // False for NaN, and for what is no root.
+        if !(abs(u) + abs(v) < 4.0 && residual <= 32.0 * self.rounding && det > 0.0) {
             return None;
         }
         // What the equations leave, seen through the inverse of (ru rv).
         let inv_det = 1.0 / det;
-        let residual = r.size();
         let rounding = (residual + self.rounding) * inv_det;
         let overlap_u = min(rounding * rv.size(), MAX_OVERLAP);
         let overlap_v = min(rounding * ru.size(), MAX_OVERLAP);

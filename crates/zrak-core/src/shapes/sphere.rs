@@ -122,22 +122,18 @@ impl Sphere {
     }
 }
 
-impl Sphere {
-    /// The normal, turned by a few roundings if it would have a grazing ray come from the other side
-    /// than its origin is on, where the path would go on in the wrong half of space.
-    #[inline(always)]
-    fn facing(&self, ray: &Ray, n: Vec3) -> Vec3 {
-        const MARGIN: f32 = 1.0 / (1 << 21) as f32;
-        let oc = self.center - ray.o;
-        let is_outside = dot(oc, oc) > self.radius * self.radius;
-        let along = dot(ray.d, n);
-        if is_outside == (along < 0.0) && along != 0.0 {
-            return n;
-        }
-        let (a, length) = (dot(ray.d, ray.d), ray.d.length());
-        let turn = 2.0 * along / a + if is_outside { MARGIN } else { -MARGIN } / length;
-        (n - ray.d * turn).normalized()
+/// The normal, turned by a few roundings if it would have a grazing ray come from the other side than it
+/// does, where the path would go on in the wrong half of space.
+#[inline(always)]
+pub(super) fn facing(ray: &Ray, n: Vec3, is_outside: bool) -> Vec3 {
+    const MARGIN: f32 = 1.0 / (1 << 21) as f32;
+    let along = dot(ray.d, n);
+    if is_outside == (along < 0.0) && along != 0.0 {
+        return n;
     }
+    let (a, length) = (dot(ray.d, ray.d), ray.d.length());
+    let turn = 2.0 * along / a + if is_outside { MARGIN } else { -MARGIN } / length;
+    (n - ray.d * turn).normalized()
 }
 
 impl Shape for Sphere {
@@ -159,7 +155,9 @@ impl Shape for Sphere {
 
     #[inline(always)]
     fn interaction(&self, ray: &Ray, t: f32) -> SurfaceInteraction {
-        let n = self.facing(ray, (ray.at(t) - self.center).normalized());
+        let oc = self.center - ray.o;
+        let is_outside = dot(oc, oc) > self.radius * self.radius;
+        let n = facing(ray, (ray.at(t) - self.center).normalized(), is_outside);
         let arm = n * self.radius;
         let p = self.center + arm;
         // The arm is off by the normalisation, the sum by one rounding, and the next ray's view

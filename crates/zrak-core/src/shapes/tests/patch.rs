@@ -108,7 +108,7 @@ fn scene_of(corners: [Vec3; 4]) -> TestScene {
 #[test]
 fn hits_are_roots_of_the_equations() {
     let mut rng = Rng::new(1);
-    let (mut n_hits, mut n_misses, mut n_second) = (0, 0, 0);
+    let (mut n_hits, mut n_misses, mut n_second, mut n_touches) = (0, 0, 0, 0);
     for _ in 0..300_000 {
         let (corners, size) = random_corners(&mut rng);
         let p = corners.map(double);
@@ -136,8 +136,18 @@ fn hits_are_roots_of_the_equations() {
             Some(hit) => {
                 n_hits += 1;
                 let t = f64::from(hit.t);
-                let Some(root) = real.iter().find(|r| (r.t - t).abs() < error(r)) else {
-                    panic!("{t} is not among {real:?}: {corners:?} {ray:?}")
+                let off = |r: &&Root| {
+                    (r.u - f64::from(hit.uv[0])).abs() + (r.v - f64::from(hit.uv[1])).abs()
+                };
+                let root = real.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+                let Some(root) = root.filter(|r| (r.t - t).abs() < error(r)) else {
+                    // It may touch the outline, next to which there is no root.
+                    let there = add(double(ray.o), scaled(double(ray.d), t));
+                    let [u, v] = hit.uv.map(f64::from);
+                    let off = length(sub(there, point(p, u, v)));
+                    assert!(off < 1e-6 * far, "{t} is not among {real:?}: {corners:?} {ray:?}");
+                    n_touches += 1;
+                    continue;
                 };
                 assert!(depth(root) > -margin(root), "{root:?} {hit:?}");
                 let skipped = real
@@ -174,6 +184,7 @@ fn hits_are_roots_of_the_equations() {
             }
         }
     }
+    assert!(n_touches * 1000 < n_hits, "{n_touches} {n_hits}");
     assert!(
         n_hits > 70_000 && n_misses > 50_000 && n_second > 500,
         "{n_hits} {n_misses} {n_second}"
@@ -184,7 +195,7 @@ fn hits_are_roots_of_the_equations() {
 #[test]
 fn rays_leave_both_sides() {
     let mut rng = Rng::new(2);
-    let (mut n_cases, mut n_again) = (0, 0);
+    let (mut n_cases, mut n_again, mut n_touches) = (0, 0, 0);
     while n_cases < 200_000 {
         let (corners, size) = random_corners(&mut rng);
         let p = corners.map(double);
@@ -204,12 +215,17 @@ fn rays_leave_both_sides() {
             n_again += 1;
             let t = f64::from(again.t);
             let real = roots(p, double(away.o), double(away.d));
-            let is_real =
+            let is_root =
                 real.iter().any(|r| r.t > 0.0 && (r.t - t).abs() < 1e-2 * t + 1e-5 * size / r.sin);
-            assert!(is_real, "{t:e} of {real:?}: {corners:?} {i:?} {away:?}");
+            // Touching its outline, the ray may be found to meet it twice, once, or not at all.
+            let [u, v] = again.uv.map(f64::from);
+            let there = add(double(away.o), scaled(double(away.d), t));
+            let is_touch = t > 1e-3 * size && length(sub(there, point(p, u, v))) < 1e-5 * size;
+            n_touches += u32::from(!is_root && is_touch);
+            assert!(is_root || is_touch, "{t:e} of {real:?}: {corners:?} {i:?} {away:?}");
         }
     }
-    assert!(n_again > 1000, "{n_again}");
+    assert!(n_again > 1000 && n_touches * 100 < n_again, "{n_again} {n_touches}");
 }
 
 /// A ball of bent patches, of which some are cut into two triangles: they share straight edges.
