@@ -14,6 +14,7 @@
 
 mod camera;
 mod color;
+mod curves;
 mod directives;
 mod error;
 mod facts;

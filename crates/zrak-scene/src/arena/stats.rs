@@ -112,6 +112,10 @@ const PURPOSES: [(&str, &[&str]); 6] = [
             "colors",
             "disks",
             "cylinders",
+            "partial_spheres",
+            "mesh_patches",
+            "curves",
+            "ribbons",
         ],
     ),
     ("trees", &["nodes2", "nodes8"]),
@@ -277,6 +281,9 @@ fn count_primitives(scene: &SceneView) -> Primitives {
                 PrimKind::MeshTriangle => "mesh triangle",
                 PrimKind::Disk => "disk",
                 PrimKind::Cylinder => "cylinder",
+                PrimKind::PartialSphere => "part of a sphere",
+                PrimKind::MeshPatch => "bilinear patch",
+                PrimKind::Curve => "curve",
             };
             Some(PrimitiveCount { kind: name, unique, placed: placed[&kind] })
         })

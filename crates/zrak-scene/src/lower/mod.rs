@@ -6,10 +6,12 @@
 mod assets;
 mod budget;
 mod camera;
+mod curves;
 mod environment;
 mod lights;
 mod meshes;
 mod objects;
+mod patches;
 mod sky;
 mod surfaces;
 mod textures;
