@@ -38,6 +38,8 @@ pub enum SceneErrorKind {
     UnsupportedFormat,
     /// The scene is TOML, but it is not a scene that can be rendered.
     Invalid,
+    /// A compiled scene is not as it was written, or leads astray.
+    Damaged,
 }
 
 /// A problem and its place in the text.

@@ -1,7 +1,8 @@
 //! PLY files: the Stanford polygon format, as text and as bytes of both orders.
 //!
 //! Read are the elements `vertex` (x y z; nx ny nz; u v, s t, texture_u texture_v or texture_s texture_t;
-//! red green blue and alpha) and `face` (vertex_indices or vertex_index). Everything else is skipped.
+//! red green blue and alpha) and `face` (vertex_indices or vertex_index). Everything else is skipped, but
+//! for what only zrak writes: tangents (tx ty tz tw) and the groups of faces (group).
 //! Colours of integer type are sRGB codes, as scanners write them, and are made linear; those of
 //! floating-point type are linear.
 

@@ -224,7 +224,8 @@ fn gzip_bombs_stop_at_the_limit() {
 
 /// A mesh of a few vertices with any of the attributes.
 fn any_mesh() -> impl Strategy<Value = TriangleMesh> {
-    (3_usize..20, any::<[bool; 3]>(), any::<u32>()).prop_map(|(n, [normals, uvs, colors], seed)| {
+    (3_usize..20, any::<[bool; 5]>(), any::<u32>()).prop_map(|(n, has, seed)| {
+        let [normals, uvs, colors, tangents, groups] = has;
         let mut state = seed;
         let mut random = move || {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -242,11 +243,19 @@ fn any_mesh() -> impl Strategy<Value = TriangleMesh> {
             if colors {
                 mesh.colors.push([random(), random(), random(), random()]);
             }
+            if tangents {
+                mesh.tangents.push([random(), random(), random(), 1.0]);
+            }
             if i >= 2 {
                 mesh.triangles.push([0, i as u32 - 1, i as u32]);
+                if groups {
+                    mesh.face_groups.push(i as u32 % 3);
+                }
             }
         }
         mesh.drop_degenerate();
+        let n_groups = mesh.face_groups.iter().max().map_or(0, |g| g + 1);
+        mesh.groups = (0..n_groups).map(|i| i.to_string()).collect();
         mesh
     })
 }
