@@ -3,10 +3,7 @@
 use std::sync::Arc;
 
 use zrak_mesh::{TriangleMesh, loop_subdivide, ply};
-use zrak_scene::desc::{
-    ColorDesc, LightSides, MaterialDesc, MediumInterfaceDesc, MeshDesc, ObjectDesc, ScalarDesc,
-    TransformStep,
-};
+use zrak_scene::desc::{MeshDesc, ObjectDesc, TransformStep};
 
 use crate::curves::curve;
 use crate::error::{Fault, Result, Span};
@@ -162,46 +159,6 @@ impl Importer {
         let name = self.fresh("mesh");
         self.desc.meshes.insert(name.clone(), MeshDesc::Loaded(Arc::new(mesh)));
         Ok(placed_mesh(name, material, flip))
-    }
-
-    /// Name of the material of a shape, with the light, the media and the holes that it has.
-    fn surface(&mut self, params: &Params) -> Result<String> {
-        let material = self.state.material.to_string();
-        let alpha = self.scalar(params, "alpha")?.filter(|alpha| *alpha != ScalarDesc::Value(1.0));
-        let [inside, outside] = self.state.media.clone();
-        let light = self.state.light.clone();
-        let has_media = inside != outside;
-        if alpha.is_none() && light.is_none() && !has_media {
-            return Ok(material);
-        }
-        // The same again is made once.
-        let key = format!("{material}|{alpha:?}|{light:?}|{inside}|{outside}");
-        if let Some(name) = self.surfaces.get(&key) {
-            return Ok(name.clone());
-        }
-        let mut surface = match self.desc.materials.get(&material) {
-            Some(surface @ MaterialDesc::Surface { .. }) => surface.clone(),
-            _ => MaterialDesc::surface(material),
-        };
-        if let MaterialDesc::Surface { emission, emission_sides, alpha: a, medium, .. } =
-            &mut surface
-        {
-            if let Some(light) = light {
-                *emission = Some(ColorDesc::Solid(light.radiance));
-                *emission_sides =
-                    if light.two_sided { LightSides::Both } else { LightSides::Front };
-            }
-            *a = alpha;
-            if has_media {
-                let name = |name: &str| Some(name.to_owned()).filter(|name| !name.is_empty());
-                *medium =
-                    Some(MediumInterfaceDesc { inside: name(&inside), outside: name(&outside) });
-            }
-        }
-        let name = self.fresh("surface");
-        self.desc.materials.insert(name.clone(), surface);
-        self.surfaces.insert(key, name.clone());
-        Ok(name)
     }
 }
 

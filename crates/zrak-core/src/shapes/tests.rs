@@ -3,6 +3,8 @@
 mod boxes;
 mod curve;
 mod instance;
+mod mesh;
+mod parts;
 mod patch;
 mod quad;
 mod round;

@@ -195,7 +195,7 @@ fn all<T: bytemuck::Pod>(array: zrak_core::accessor::Array<'_, T>) -> Vec<T> {
 #[test]
 fn what_is_packed_is_what_is_seen() {
     let arrays = good();
-    let arena = SceneArena::pack(globals(), &arrays).unwrap();
+    let arena = SceneArena::pack(globals(), arrays.clone()).unwrap();
     assert_eq!(*arena.globals(), globals());
     let view = arena.view();
     macro_rules! compare {
@@ -229,7 +229,7 @@ fn what_is_packed_is_what_is_seen() {
 fn refused(words: &str, damage: impl FnOnce(&mut SceneArrays)) {
     let mut arrays = good();
     damage(&mut arrays);
-    let error = match SceneArena::pack(globals(), &arrays) {
+    let error = match SceneArena::pack(globals(), arrays.clone()) {
         Ok(_) => panic!("damage was not noticed; expected: {words}"),
         Err(error) => error.to_string(),
     };
@@ -341,7 +341,7 @@ fn boundaries_of_the_wrong_kind_are_refused() {
     for kind in [PrimKind::Sphere, PrimKind::MovingSphere, PrimKind::Box] {
         let mut arrays = good();
         arrays.media[0].boundary = prim(kind);
-        assert!(SceneArena::pack(globals(), &arrays).is_ok());
+        assert!(SceneArena::pack(globals(), arrays.clone()).is_ok());
     }
     refused("no placement", |a| a.media[0].placement = 1);
 }
@@ -440,7 +440,7 @@ fn trees_that_are_too_deep_for_the_stack_are_refused() {
         // The tree of the instance comes last.
         arrays.instances[0].root2 = n as u32;
         arrays.nodes2.push(root(&[prim(PrimKind::Sphere)]));
-        SceneArena::pack(globals(), &arrays).map(|_| ()).map_err(|e| e.to_string())
+        SceneArena::pack(globals(), arrays.clone()).map(|_| ()).map_err(|e| e.to_string())
     };
     assert_eq!(chain(MAX_DEPTH), Ok(()));
     assert!(chain(MAX_DEPTH + 1).unwrap_err().contains("too deep"));

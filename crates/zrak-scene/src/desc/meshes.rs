@@ -27,7 +27,7 @@ impl MeshDesc {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum MeshDesc {
-    /// PLY file, which may be gzip-ed.
+    /// PLY or OBJ file, which may be gzip-ed; of an OBJ file the faces, not the materials.
     File {
         /// The file, relative to the scene file.
         path: String,

@@ -1,16 +1,18 @@
-//! Meshes: read when they are first placed, and brought into the space that they are placed in.
+//! Meshes: read before they are placed, and brought into the space that they are placed in.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
+use rayon::prelude::*;
 use zrak_core::math::Vec3;
 use zrak_core::scene::{MaterialRef, PrimKind, PrimRef};
 use zrak_core::shapes::{MESH_COLORS, MESH_NORMALS, MESH_TANGENTS, MESH_UVS, Mesh, MeshTriangle};
 use zrak_mesh::TriangleMesh;
 
-use super::LowerOptions;
+use super::budget::Budget;
 use super::patches::{self, Patches};
 use super::transform::Transform;
+use super::{LowerOptions, assets};
 use crate::arena::SceneArrays;
 use crate::desc::{MeshDesc, ObjectDesc, SceneDesc, Triple};
 use crate::validate::limits::NUMBER_MAX;
@@ -23,16 +25,19 @@ const SHARED_MIN: usize = 64;
 pub(super) struct Meshes<'a> {
     desc: &'a SceneDesc,
     options: &'a LowerOptions,
+    /// What meshes, and what is placed, may still take.
+    pub(super) budget: &'a Budget,
     /// How often each is placed.
     n_uses: HashMap<&'a str, usize>,
-    read: HashMap<&'a str, Arc<TriangleMesh>>,
+    read: HashMap<&'a str, Result<Arc<TriangleMesh>, String>>,
 }
 
 impl<'a> Meshes<'a> {
-    pub(super) fn new(desc: &'a SceneDesc, options: &'a LowerOptions) -> Self {
+    pub(super) fn new(desc: &'a SceneDesc, options: &'a LowerOptions, budget: &'a Budget) -> Self {
         let mut n_uses = HashMap::new();
+        // Those of prototypes that are placed count once, however often that is.
+        let mut placed = HashSet::new();
         let mut lists: Vec<&[ObjectDesc]> = vec![&desc.objects];
-        lists.extend(desc.prototypes.values().map(Vec::as_slice));
         while let Some(objects) = lists.pop() {
             for object in objects {
                 match object {
@@ -40,11 +45,30 @@ impl<'a> Meshes<'a> {
                         *n_uses.entry(mesh.as_str()).or_insert(0) += 1;
                     }
                     ObjectDesc::Group { objects, .. } => lists.push(objects),
+                    ObjectDesc::Instance { prototype, .. } => {
+                        if placed.insert(prototype.as_str()) {
+                            lists.extend(desc.prototypes.get(prototype).map(Vec::as_slice));
+                        }
+                    }
                     _ => {}
                 }
             }
         }
-        Self { desc, options, n_uses, read: HashMap::new() }
+        Self { desc, options, budget, n_uses, read: HashMap::new() }
+    }
+
+    /// Reads the files of the meshes that are placed, all at once. What is wrong with one is said when it
+    /// is placed, so that errors come in the same order every time.
+    pub(super) fn read_files(&mut self) {
+        let mut wanted: Vec<(&'a str, &'a MeshDesc)> = Vec::new();
+        for (name, desc) in &self.desc.meshes {
+            if matches!(desc, MeshDesc::File { .. }) && self.n_uses.contains_key(name.as_str()) {
+                wanted.push((name, desc));
+            }
+        }
+        let this = &*self;
+        let read = wanted.into_par_iter().map(|(name, desc)| (name, this.load(desc))).collect();
+        self.read = read;
     }
 
     /// Whether a mesh is placed more than once and large enough to be stored once for all.
@@ -85,16 +109,16 @@ impl<'a> Meshes<'a> {
                 .map_err(|message| problem(message, help))?;
             return Ok((0..0).map(triangle as fn(u32) -> PrimRef).chain(prims));
         }
-        let mesh = match self.read.get(name) {
-            Some(mesh) => Arc::clone(mesh),
-            None => {
-                let mesh = self.load(desc).map_err(|message| problem(message, None))?;
-                if self.n_uses.get(name).is_some_and(|&n| n > 1) {
-                    self.read.insert(key, Arc::clone(&mesh));
-                }
-                mesh
-            }
+        // What is placed once is not kept.
+        let is_kept = self.n_uses.get(name).is_some_and(|&n| n > 1);
+        let mesh = match self.read.remove(name) {
+            Some(mesh) => mesh,
+            None => self.load(desc),
         };
+        if is_kept {
+            self.read.insert(key, mesh.clone());
+        }
+        let mesh = mesh.map_err(|message| problem(message, None))?;
         let too_many = |what: &str| {
             problem(format!("with this mesh, the scene has more than 2^28 {what}"), None)
         };
@@ -127,12 +151,12 @@ impl<'a> Meshes<'a> {
                 }))
             }
             MeshDesc::File { path } => {
-                let path = self.options.base_dir.join(path);
-                let limits = zrak_mesh::Limits::default();
-                match zrak_mesh::ply::read(&path, &limits) {
-                    Ok(mesh) => Ok(Arc::new(mesh)),
-                    Err(error) => Err(error.to_string()),
-                }
+                let path = assets::resolve(path, self.options).map_err(|e| e.to_string())?;
+                let limits = zrak_mesh::Limits { max_bytes: self.budget.left() };
+                let mesh = zrak_mesh::read(&path, &limits).map_err(|e| e.to_string())?;
+                self.budget.spend(mesh.n_bytes() as u64)?;
+                self.options.progress.add(1);
+                Ok(Arc::new(mesh))
             }
         }
     }

@@ -16,6 +16,7 @@ use zrak_core::shapes::{
     Placement, Quad, Sphere, Triangle,
 };
 
+use super::budget;
 use super::curves::{self, CurveParts};
 use super::meshes::Meshes;
 use super::surfaces::LoweredMaterial;
@@ -35,6 +36,16 @@ pub(super) struct LoweredObjects {
     pub(super) sets: Vec<Vec<PrimRef>>,
     /// For each instance of the arrays, the set that it places.
     pub(super) set_of_instance: Vec<u32>,
+}
+
+impl LoweredObjects {
+    /// About the bytes of the trees over all of it: a binary node for each primitive, and a wide one for
+    /// every third.
+    pub(super) fn n_tree_bytes(&self, n_instances: usize) -> u64 {
+        let nodes = |n: usize| n as u64 * 64 + n.div_ceil(3) as u64 * 256;
+        self.sets.iter().map(|set| nodes(set.len().max(1))).sum::<u64>()
+            + nodes(self.world.len() + n_instances)
+    }
 }
 
 /// A set of primitives, and where it stands.
@@ -221,7 +232,17 @@ impl<'a> Lowering<'a, '_, '_> {
                 let end = transform_end.as_ref().map(|t| Transform::of_steps(t).then(parent));
                 let parts = self.prototype(prototype);
                 if content.parts.len() + parts.len() > INSTANCES_MAX {
-                    self.too_many();
+                    let message = format!(
+                        "the scene's prototypes come to more than {INSTANCES_MAX} instances once they \
+                         are placed"
+                    );
+                    self.refuse(message, "place fewer of those that contain others");
+                    return;
+                }
+                // Small files can ask for many parts by prototypes in prototypes.
+                let n_bytes = parts.len() as u64 * size_of::<Part>() as u64;
+                if let Err(message) = self.meshes.budget.spend(n_bytes) {
+                    self.refuse(message, budget::HELP);
                     return;
                 }
                 content.parts.extend(parts.iter().map(|part| Part {
@@ -366,12 +387,10 @@ impl<'a> Lowering<'a, '_, '_> {
         parts
     }
 
-    fn too_many(&mut self) {
-        let message = format!(
-            "the scene's prototypes come to more than {INSTANCES_MAX} instances once they are placed"
-        );
+    /// Notes a problem of the whole scene, once.
+    fn refuse(&mut self, message: String, help: &str) {
         if self.problems.iter().all(|p| p.message != message) {
-            let help = Some("place fewer of those that contain others".to_owned());
+            let help = Some(help.to_owned());
             self.problems.push(Problem { path: Default::default(), message, help });
         }
     }

@@ -20,7 +20,7 @@ fn mesh_of(checker: &mut Checker<'_>, mesh: &MeshDesc) {
     match mesh {
         MeshDesc::File { path } => {
             if path.is_empty() {
-                let help = "name a PLY file, relative to the scene file";
+                let help = "name a PLY or OBJ file, relative to the scene file";
                 checker.note("path", "`path` is empty", Some(help));
             }
         }
