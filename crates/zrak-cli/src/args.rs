@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use zrak::{BackendChoice, RenderOptions, Tree};
 
 use crate::{
-    bench, compare, compile, completions, devices, exit_codes, export, man, render, scenes,
+    bench, compare, compile, completions, convert, devices, exit_codes, info, man, render, scenes,
     selftest,
 };
 
@@ -31,8 +31,9 @@ const EXAMPLES: &str = "\
 Examples:
   zrak scenes                           what there is to render
   zrak render final                     to final.png
-  zrak render my-scene.toml -o a.exr    a scene file to an OpenEXR picture
-  zrak export cover -o cover.toml       a scene file to start from
+  zrak render model.glb -o a.exr        a glTF file to an OpenEXR picture
+  zrak convert cover -o cover.toml      a scene file to start from
+  zrak info scene.pbrt                  what is in a scene, and the memory it takes
   zrak selftest                         is every picture the same everywhere?";
 
 /// The subcommands.
@@ -46,9 +47,12 @@ pub(crate) enum Command {
     /// Write a scene as a file that renders at once
     #[command(after_help = compile::EXAMPLES)]
     Compile(compile::CompileArgs),
-    /// Write a scene as a scene file
-    #[command(after_help = export::EXAMPLES)]
-    Export(export::ExportArgs),
+    /// Write a scene as a file of another format
+    #[command(visible_alias = "export", after_help = convert::EXAMPLES)]
+    Convert(convert::ConvertArgs),
+    /// Say what is in a scene, and the memory that it takes
+    #[command(after_help = info::EXAMPLES)]
+    Info(info::InfoArgs),
     /// List what can be rendered on
     Devices(devices::DevicesArgs),
     /// Say how two pictures differ
@@ -67,43 +71,6 @@ pub(crate) enum Command {
     #[command(after_help = man::EXAMPLES)]
     Man(man::ManArgs),
 }
-
-/// What of a scene may be read.
-#[derive(Args, Clone, Copy, Debug)]
-#[command(next_help_heading = "Scene")]
-pub(crate) struct LoadArgs {
-    /// Read files outside of the scene's folder, too (pbrt files)
-    #[arg(long)]
-    pub(crate) allow_external: bool,
-    /// Most bytes of a scene's files together, unpacked (pbrt files)
-    #[arg(long, value_name = "N", default_value_t = zrak::LoadOptions::default().max_bytes)]
-    pub(crate) max_bytes: u64,
-}
-
-impl LoadArgs {
-    /// Loads a scene; says what was not read as it stands, unless nobody wants to know.
-    pub(crate) fn load(
-        &self,
-        scene: &std::path::Path,
-        quiet: bool,
-    ) -> Result<zrak::Scene, zrak::Error> {
-        let Self { allow_external, max_bytes } = *self;
-        let scene = zrak::load_scene_with(scene, &zrak::LoadOptions { allow_external, max_bytes })?;
-        if !quiet {
-            for warning in scene.warnings.iter().take(WARNINGS_MAX) {
-                crate::terminal::note(&format!("warning: {warning}"));
-            }
-            if scene.warnings.len() > WARNINGS_MAX {
-                let n_more = scene.warnings.len() - WARNINGS_MAX;
-                crate::terminal::note(&format!("warning: and {n_more} more of the kind"));
-            }
-        }
-        Ok(scene)
-    }
-}
-
-/// More warnings than this are counted, not shown.
-const WARNINGS_MAX: usize = 20;
 
 /// What to render on.
 #[derive(Args, Clone, Debug)]

@@ -35,7 +35,7 @@ pub(crate) struct CompileArgs {
     #[arg(long, short)]
     quiet: bool,
     #[command(flatten)]
-    load: crate::args::LoadArgs,
+    load: crate::load::LoadArgs,
     #[command(flatten)]
     overrides: Overrides,
 }
@@ -69,7 +69,7 @@ pub(crate) fn run(args: &CompileArgs, start: Instant) -> Result<Exit, Failure> {
         return Err(Failure::new(Exit::Usage, message));
     }
     zrak::image::check_replaceable(path).map_err(|error| Failure::file(&error))?;
-    let mut scene = args.load.load(&args.scene, args.quiet)?;
+    let mut scene = args.load.load(&args.scene, args.quiet)?.into_scene();
     args.overrides.apply(&mut scene.desc)?;
     let compiled = scene.compile()?;
     let build_s = start.elapsed().as_secs_f64();

@@ -8,14 +8,17 @@ mod bench;
 mod compare;
 mod compile;
 mod completions;
+mod convert;
 mod devices;
-mod export;
+mod info;
 mod man;
 mod render;
 mod scenes;
 mod selftest;
 
 mod interrupt;
+mod load;
+mod loading;
 mod machine;
 mod overrides;
 mod progress;
@@ -35,7 +38,8 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(&args, start),
         Command::Scenes(args) => scenes::run(&args),
         Command::Compile(args) => compile::run(&args, start),
-        Command::Export(args) => export::run(&args),
+        Command::Convert(args) => convert::run(&args),
+        Command::Info(args) => info::run(&args),
         Command::Devices(args) => devices::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Selftest(args) => selftest::run(&args),

@@ -5,6 +5,7 @@
 //! packed, because the GPU does not.
 
 mod check;
+pub mod stats;
 mod storage;
 #[cfg(test)]
 mod tests;
@@ -107,17 +108,24 @@ macro_rules! define_arrays {
                 SceneView { globals, kinds: Kinds::ALL, $($name: Array::new(&self.$name),)* }
             }
 
+            /// Bytes of all records.
+            #[must_use]
+            pub fn n_bytes(&self) -> usize {
+                0 $(+ size_of_val(self.$name.as_slice()))*
+            }
+
             /// Number of records of each array, by name.
             fn lens(&self) -> Vec<(&'static str, usize)> {
                 vec![$((stringify!($name), self.$name.len()),)*]
             }
 
-            fn copy_into(&self, spans: &Spans, bytes: &mut [u8]) {
-                $({
-                    let source: &[u8] = bytemuck::cast_slice(&self.$name);
-                    let start = spans.$name.offset as usize * OFFSET_UNIT;
-                    bytes[start..start + source.len()].copy_from_slice(source);
-                })*
+            /// Appends the arrays one after the other, and frees each when it is done: of large scenes
+            /// there must not be two copies.
+            fn move_into(self, chunks: &mut Vec<storage::Chunk>) {
+                $(
+                    storage::append(chunks, bytemuck::cast_slice(&self.$name));
+                    drop(self.$name);
+                )*
             }
         }
 
@@ -175,7 +183,7 @@ impl SceneArena {
     ///
     /// # Errors
     /// If a handle leads out of bounds, or the arrays are larger than an arena can be (64 GiB).
-    pub fn pack(globals: Globals, arrays: &SceneArrays) -> Result<Self, Corrupt> {
+    pub fn pack(globals: Globals, arrays: SceneArrays) -> Result<Self, Corrupt> {
         let mut lens: Lens = [0; ARRAY_TYPES.len()];
         for (len, (name, n)) in lens.iter_mut().zip(arrays.lens()) {
             *len = u32::try_from(n)
@@ -184,9 +192,9 @@ impl SceneArena {
         let Some((spans, size)) = layout(&lens) else {
             return Err(Corrupt::new("the arrays are more than an arena can hold: 64 GiB"));
         };
-        let mut bytes = storage::zeroed(size);
-        arrays.copy_into(&spans, bytemuck::cast_slice_mut(&mut bytes));
-        let arena = Self { globals, spans, storage: Storage::Owned(Arc::new(bytes)) };
+        let mut chunks = Vec::with_capacity(size / ARENA_ALIGNMENT);
+        arrays.move_into(&mut chunks);
+        let arena = Self { globals, spans, storage: Storage::Owned(Arc::new(chunks)) };
         check::check(&arena.view(), &pieces(&lens), &|_| ())?;
         Ok(arena)
     }

@@ -97,6 +97,22 @@ impl SceneError {
         Self(Box::new(Inner { kind, diagnostics, n_problems, origin }))
     }
 
+    /// A problem of a line of the file `origin`, by its number and its text, of which the part `span`, in
+    /// bytes, matters: for files too large to be kept as a text.
+    #[must_use]
+    pub fn line(
+        kind: SceneErrorKind,
+        origin: &str,
+        (line, text): (usize, &str),
+        span: Range<usize>,
+        message: String,
+    ) -> Self {
+        let problem = Problem { path: KeyPath::default(), message, help: None };
+        let place = Some(Place { line, ..Place::new(text, span) });
+        let diagnostics = vec![Diagnostic { problem, place }];
+        Self(Box::new(Inner { kind, diagnostics, n_problems: 1, origin: origin.to_owned() }))
+    }
+
     /// What sort of error it is.
     pub fn kind(&self) -> SceneErrorKind {
         self.0.kind

@@ -8,6 +8,7 @@ pub mod desc;
 pub mod error;
 pub mod file;
 pub mod lower;
+pub mod progress;
 pub mod schema;
 pub mod validate;
 

@@ -3,6 +3,7 @@
 mod bad_input;
 mod compare;
 mod compile;
+mod formats;
 mod harness;
 mod help;
 mod interrupt;

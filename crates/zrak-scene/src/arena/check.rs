@@ -16,7 +16,7 @@ use zrak_core::media::{NO_PLACEMENT, VACUUM};
 use zrak_core::scene::{
     MaterialKind, MaterialRef, PrimKind, PrimRef, SceneView, TextureKind, TextureRef,
 };
-use zrak_core::shapes::NO_MOTION;
+use zrak_core::shapes::{CURVE_RIBBON, MAX_HALVINGS, NO_MOTION};
 use zrak_core::textures::{
     ImageTexture, MAX_LEVELS, N_OPS, NO_MAPPING, OP_FRACTAL, OP_IMAGE, OP_NOISE, TEXELS_LINEAR,
     TEXELS_SRGB8, TEXELS_UNORM16, words_per_texel,
@@ -101,6 +101,7 @@ pub(super) fn check(
     let (binary, wide) = rayon::join(|| binary.finish(), || wide.finish());
     binary?;
     wide?;
+    meshes.check_patches()?;
     check_shapes(scene)?;
     check_simple_materials(scene)?;
     check_surfaces(scene)?;
@@ -117,6 +118,18 @@ fn check_shapes(scene: &SceneView) -> Check {
     each(&scene.triangles, |_, shape| check_material(scene, shape.material))?;
     each(&scene.disks, |_, shape| check_material(scene, shape.material))?;
     each(&scene.cylinders, |_, shape| check_material(scene, shape.material))?;
+    each(&scene.partial_spheres, |_, shape| check_material(scene, shape.material))?;
+    each(&scene.curves, |_, curve| {
+        check_material(scene, curve.material)?;
+        require(curve.form <= CURVE_RIBBON, || format!("a curve of form {}", curve.form))?;
+        require(curve.form != CURVE_RIBBON || curve.ribbon < scene.ribbons.len(), || {
+            format!("no normals {} of a ribbon", curve.ribbon)
+        })?;
+        // A ray walks over all pieces.
+        require(curve.n_halvings <= MAX_HALVINGS, || {
+            format!("a curve that is halved {} times", curve.n_halvings)
+        })
+    })?;
     each(&scene.meshes, |_, mesh| check_material(scene, mesh.material))?;
     each(&scene.instances, |_, instance| {
         require(instance.motion == NO_MOTION || instance.motion < scene.motions.len(), || {
@@ -279,6 +292,9 @@ fn n_prims(scene: &SceneView, kind: u32) -> u32 {
         Some(PrimKind::MeshTriangle) => scene.mesh_triangles.len(),
         Some(PrimKind::Disk) => scene.disks.len(),
         Some(PrimKind::Cylinder) => scene.cylinders.len(),
+        Some(PrimKind::PartialSphere) => scene.partial_spheres.len(),
+        Some(PrimKind::MeshPatch) => scene.mesh_patches.len(),
+        Some(PrimKind::Curve) => scene.curves.len(),
         Some(PrimKind::Instance) => scene.instances.len(),
         Some(PrimKind::Medium) => scene.media.len(),
         Some(PrimKind::Node) | None => 0,

@@ -26,6 +26,17 @@ pub(super) fn zeroed(size: usize) -> Vec<Chunk> {
     vec![Chunk::zeroed(); size / ARENA_ALIGNMENT]
 }
 
+/// Appends bytes, and zeros up to the next multiple of the alignment.
+pub(super) fn append(chunks: &mut Vec<Chunk>, bytes: &[u8]) {
+    let (whole, rest) = bytes.as_chunks::<ARENA_ALIGNMENT>();
+    chunks.extend(whole.iter().map(|bytes| Chunk(*bytes)));
+    if !rest.is_empty() {
+        let mut last = Chunk::zeroed();
+        last.0[..rest.len()].copy_from_slice(rest);
+        chunks.push(last);
+    }
+}
+
 /// The bytes of an arena, aligned to [`ARENA_ALIGNMENT`]. A copy shares them.
 #[derive(Clone)]
 pub(crate) enum Storage {

@@ -107,6 +107,9 @@ pub(super) fn sphere(center: Triple, radius: f64, material: &str) -> ObjectDesc 
         center,
         center_end: None,
         radius,
+        z_min: None,
+        z_max: None,
+        phi_max_deg: None,
         material: material.to_owned(),
         transform: Vec::new(),
     }
@@ -123,6 +126,9 @@ pub(super) fn moving_sphere(
         center,
         center_end: Some(center_end),
         radius,
+        z_min: None,
+        z_max: None,
+        phi_max_deg: None,
         material,
         transform: Vec::new(),
     }

@@ -24,7 +24,7 @@ pub use materials::{
     PrincipledDesc, RoughnessDesc, RoughnessMap,
 };
 pub use meshes::MeshDesc;
-pub use objects::{BoundaryDesc, ObjectDesc};
+pub use objects::{BoundaryDesc, CurveForm, ObjectDesc};
 pub use textures::{
     ColorDesc, FractalPattern, ImageChannel, ImageEncoding, ImageFilter, MappingDesc, NoisePattern,
     ScalarDesc, TextureDesc, WrapMode,

@@ -5,6 +5,7 @@
 //! Images are looked at later, when they are read.
 
 mod checker;
+mod curves;
 mod lights;
 pub mod limits;
 mod materials;

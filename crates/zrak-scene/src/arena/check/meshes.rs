@@ -1,9 +1,9 @@
-//! Checks that triangles of meshes lead to vertices, and vertices to all that their meshes say they have.
+//! Checks that triangles and patches of meshes lead to vertices, and vertices to all that their meshes say they have.
 
 use zrak_core::scene::SceneView;
 use zrak_core::shapes::{MESH_COLORS, MESH_NORMALS, MESH_TANGENTS, MESH_UVS, Mesh, MeshTriangle};
 
-use super::{Check, require};
+use super::{Check, each, require};
 use crate::arena::PIECE_SIZE;
 
 const PIECE: usize = PIECE_SIZE / size_of::<MeshTriangle>();
@@ -53,19 +53,24 @@ impl<'a> MeshChecker<'a> {
                 None => false,
             };
             if !is_good {
-                self.check_closely(triangle)?;
+                self.check_closely(triangle.mesh, &triangle.vertices)?;
             }
         }
         Ok(())
     }
 
+    /// Checks all patches.
+    pub(super) fn check_patches(&self) -> Check {
+        each(&self.scene.mesh_patches, |_, patch| self.check_closely(patch.mesh, &patch.vertices))
+    }
+
     #[cold]
     #[inline(never)]
-    fn check_closely(&self, triangle: MeshTriangle) -> Check {
+    fn check_closely(&self, mesh: u32, vertices: &[u32]) -> Check {
         let scene = &self.scene;
-        require(triangle.mesh < scene.meshes.len(), || format!("no mesh {}", triangle.mesh))?;
-        let mesh = scene.meshes.get(triangle.mesh);
-        for v in triangle.vertices {
+        require(mesh < scene.meshes.len(), || format!("no mesh {mesh}"))?;
+        let mesh = scene.meshes.get(mesh);
+        for &v in vertices {
             require(v < scene.positions.len(), || format!("no vertex {v}"))?;
             for (offset, len) in attributes(scene, &mesh).into_iter().flatten() {
                 require(v.wrapping_add(offset) < len, || {

@@ -96,7 +96,7 @@ fn globals() -> Globals {
 }
 
 fn is_packed(arrays: &SceneArrays) -> bool {
-    SceneArena::pack(globals(), arrays).is_ok()
+    SceneArena::pack(globals(), arrays.clone()).is_ok()
 }
 
 fn roots(arrays: &SceneArrays) -> [Vec<u32>; 2] {
@@ -252,7 +252,7 @@ fn depth_adds_up_over_pieces() {
         arrays.nodes8.truncate(1);
         arrays.nodes8[0] = Node::EMPTY;
         arrays.nodes8.push(Node::EMPTY);
-        SceneArena::pack(globals(), &arrays).map(|_| ()).map_err(|error| error.to_string())
+        SceneArena::pack(globals(), arrays.clone()).map(|_| ()).map_err(|error| error.to_string())
     };
     assert_eq!(chain(MAX_DEPTH), Ok(()));
     let error = chain(MAX_DEPTH + 1).unwrap_err();
