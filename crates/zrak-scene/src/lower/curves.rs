@@ -36,7 +36,7 @@ pub(super) fn add(
     curve: &CurveParts<'_>,
     map: Option<(&Transform, f64)>,
     arrays: &mut SceneArrays,
-) -> Option<impl Iterator<Item = PrimRef> + use<>> {
+) -> Option<impl ExactSizeIterator<Item = PrimRef> + use<>> {
     let place = |p: Triple| map.map_or(p, |(map, _)| map.point(p));
     let scale = map.map_or(1.0, |(_, scale)| scale);
     let n_segments = curve.points.len() / 3;
@@ -127,7 +127,8 @@ fn n_cuts(points: &[Triple; 4], width: f64) -> u32 {
     while n < CUTS_MAX {
         let after = area(n + 1);
         // False for areas beyond the range of single precision.
-        if !(after < (1.0 - SAVING) * before) {
+        let pays = after < (1.0 - SAVING) * before;
+        if !pays {
             break;
         }
         before = after;
