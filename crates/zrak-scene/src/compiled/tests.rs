@@ -319,6 +319,7 @@ fn a_medium_without_room_does_not_keep_rays() {
     use zrak_core::math::Vec3;
     use zrak_core::ray::Ray;
     use zrak_core::sampler::Sampler;
+    use zrak_core::shapes::{boundary_interval, boundary_surely_contains};
     let mut file = file_of(&(builtin::find("cornell-smoke").unwrap().build)());
     let start = start_of(&file);
     let lens: Lens = bytemuck::pod_read_unaligned(&file[128..128 + size_of::<Lens>()]);
@@ -330,7 +331,7 @@ fn a_medium_without_room_does_not_keep_rays() {
             file[at..at + 4].copy_from_slice(&word.to_ne_bytes());
         }
     };
-    let tiny = f32::to_bits(1e-39);
+    let tiny = f32::to_bits(1e-41);
     // No free path, no placement; and boxes next to the origin.
     for i in 0..spans.media.len as usize {
         put(spans.media.offset as usize * 16 + 16 * i + 8, &[0, u32::MAX]);
@@ -345,7 +346,17 @@ fn a_medium_without_room_does_not_keep_rays() {
     let view = scene.arena().view();
     let d = Vec3::splat(1.0).normalized();
     let ray = Ray { o: Vec3::ZERO, d, time: 0.0 };
+    let mut n_searches = 0;
     for i in 0..view.media.len() {
-        let _ = view.media.get(i).intersect(&view, i, &ray, &Sampler::new(0, 0, 0, 0), 0.0);
+        let medium = view.media.get(i);
+        // A share of the way to the middle is no step at all, and the start is not inside.
+        if let Some([start, end]) = boundary_interval(&view, medium.boundary, None, &ray) {
+            assert!(start == 0.0 && end > 0.0 && 0.5 * end / 1_048_576.0 == 0.0, "{end:e}");
+            let (p, error) = (Vec3::ZERO, Vec3::ZERO);
+            assert!(!boundary_surely_contains(&view, medium.boundary, None, p, error, 0.0));
+            n_searches += 1;
+        }
+        let _ = medium.intersect(&view, i, &ray, &Sampler::new(0, 0, 0, 0), 0.0);
     }
+    assert!(n_searches > 0);
 }
