@@ -151,7 +151,7 @@ fn cross(u: Triple, v: Triple) -> Triple {
 /// The direction as a unit vector; up, if it has none.
 fn unit(v: Triple) -> Triple {
     let largest = v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-    if !(largest > 0.0) {
+    if largest == 0.0 {
         return [0.0, 0.0, 1.0];
     }
     let v = v.map(|x| x / largest);

@@ -36,7 +36,7 @@ pub(super) fn add(
     curve: &CurveParts<'_>,
     map: Option<(&Transform, f64)>,
     arrays: &mut SceneArrays,
-) -> Option<impl Iterator<Item = PrimRef> + use<>> {
+) -> Option<impl ExactSizeIterator<Item = PrimRef> + use<>> {
     let place = |p: Triple| map.map_or(p, |(map, _)| map.point(p));
     let scale = map.map_or(1.0, |(_, scale)| scale);
     let n_segments = curve.points.len() / 3;

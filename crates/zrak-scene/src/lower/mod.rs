@@ -12,6 +12,7 @@ mod lights;
 mod meshes;
 mod objects;
 mod patches;
+mod shapes;
 mod sky;
 mod surfaces;
 mod textures;

@@ -8,17 +8,16 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use zrak_core::math::{Vec3, vec3};
 use zrak_core::media::{ConstantMedium, NO_PLACEMENT};
 use zrak_core::scene::{MaterialRef, PrimKind, PrimRef};
 use zrak_core::shapes::{
-    Box3, Cylinder, Disk, Instance, Motion, MovingSphere, NEEDS_UV, NO_MOTION, PartialSphere,
-    Placement, Quad, Sphere, Triangle,
+    Box3, Curve, Cylinder, Instance, Motion, MovingSphere, NEEDS_UV, NO_MOTION, Sphere,
 };
 
 use super::budget;
 use super::curves::{self, CurveParts};
 use super::meshes::Meshes;
+use super::shapes::{disk, partial_sphere, placement_of, quad, single, triangle};
 use super::surfaces::LoweredMaterial;
 use super::transform::Transform;
 use crate::arena::SceneArrays;
@@ -113,11 +112,6 @@ const NO_MATERIAL: LoweredMaterial = LoweredMaterial {
     handle: MaterialRef::new(zrak_core::scene::MaterialKind::Isotropic, 0),
     needs_uv: false,
 };
-
-fn single(v: Triple) -> Vec3 {
-    let [x, y, z] = v.map(|x| x as f32);
-    vec3(x, y, z)
-}
 
 impl<'a> Lowering<'a, '_, '_> {
     fn content(&mut self, objects: &'a [ObjectDesc]) -> Content {
@@ -313,11 +307,14 @@ impl<'a> Lowering<'a, '_, '_> {
         };
         let Some(prims) = curves::add(curve, map, self.arrays) else {
             let message = "the scene's curves come to more than 2^28 parts".to_owned();
-            if self.problems.iter().all(|p| p.message != message) {
-                self.problems.push(Problem { path: Default::default(), message, help: None });
-            }
+            self.refuse(message, "draw fewer of them, or make them of fewer segments");
             return;
         };
+        let n_bytes = (prims.len() * size_of::<Curve>()) as u64;
+        if let Err(message) = self.meshes.budget.spend(n_bytes) {
+            self.refuse(message, budget::HELP);
+            return;
+        }
         if !placed {
             content.prims.extend(prims);
             return;
@@ -477,90 +474,5 @@ impl<'a> Lowering<'a, '_, '_> {
             _pad: 0,
         });
         (PrimRef::new(PrimKind::Box, self.arrays.boxes.len() as u32 - 1), !is_plain)
-    }
-}
-
-fn placement_of(to_world: &Transform) -> Placement {
-    // Validation refuses maps that cannot be inverted.
-    let back = to_world.inverse().unwrap_or(Transform::IDENTITY);
-    Placement { world_from_object: to_world.to_affine(), object_from_world: back.to_affine() }
-}
-
-fn quad(corner: Triple, u: Triple, v: Triple, material: MaterialRef, to_world: &Transform) -> Quad {
-    let (u, v) = (single(to_world.vector(u)), single(to_world.vector(v)));
-    let mut quad = Quad::new(single(to_world.point(corner)), u, v, material);
-    // A reflection turns u x v around, but the side that shines is still the same one.
-    if to_world.determinant() < 0.0 {
-        quad.normal = -quad.normal;
-    }
-    quad
-}
-
-/// A part of a sphere about the origin.
-fn partial_sphere(
-    radius: f64,
-    [z_min, z_max]: [f64; 2],
-    phi_max_deg: f64,
-    material: MaterialRef,
-) -> PartialSphere {
-    let theta = |z: f64| libm::acos((z / radius).clamp(-1.0, 1.0));
-    // Where nothing is cut off, rounding must not do it.
-    PartialSphere {
-        radius: radius as f32,
-        z_min: if z_min > -radius { z_min } else { -2.0 * radius } as f32,
-        z_max: if z_max < radius { z_max } else { 2.0 * radius } as f32,
-        phi_max: phi_max_deg.to_radians() as f32,
-        theta_low: theta(z_min) as f32,
-        theta_span: (theta(z_max) - theta(z_min)) as f32,
-        material,
-        _pad: 0,
-    }
-}
-
-fn triangle(
-    vertices: [Triple; 3],
-    uv: [[f64; 2]; 3],
-    material: MaterialRef,
-    to_world: &Transform,
-) -> Triangle {
-    let mut vertices = vertices.map(|p| single(to_world.point(p)));
-    let mut uv = uv.map(|c| c.map(|x| x as f32));
-    // A reflection turns the order of the corners around.
-    if to_world.determinant() < 0.0 {
-        vertices.swap(1, 2);
-        uv.swap(1, 2);
-    }
-    Triangle { vertices, uv, material }
-}
-
-fn disk(
-    [height, radius, inner_radius, phi_max_deg]: [f64; 4],
-    material: MaterialRef,
-    to_world: &Transform,
-) -> Disk {
-    let scaled = |a: Triple, s: f64| a.map(|x| x * s);
-    let dot = |a: Triple, b: Triple| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let cross = |a: Triple, b: Triple| {
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-    };
-    let u = to_world.vector([radius, 0.0, 0.0]);
-    let v = to_world.vector([0.0, radius, 0.0]);
-    let across = cross(u, v);
-    let area = dot(across, across).sqrt();
-    let n = scaled(across, 1.0 / area);
-    let side = if to_world.determinant() < 0.0 { -1.0 } else { 1.0 };
-    Disk {
-        center: single(to_world.point([0.0, 0.0, height])),
-        material,
-        normal: single(scaled(n, side)),
-        inner: (inner_radius / radius) as f32,
-        x_axis: single(scaled(cross(v, n), 1.0 / area)),
-        phi_max: phi_max_deg.to_radians() as f32,
-        y_axis: single(scaled(cross(n, u), 1.0 / area)),
-        _pad0: 0,
-        u: single(u),
-        _pad1: 0,
-        v: single(v),
-        _pad2: 0,
     }
 }
