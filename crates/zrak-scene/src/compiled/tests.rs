@@ -29,11 +29,15 @@ fn file_of(desc: &SceneDesc) -> Vec<u8> {
     bytes
 }
 
-/// The file of the scene with one of everything, and of one with meshes, instances and lights.
-fn files() -> &'static [Vec<u8>; 2] {
-    static FILES: OnceLock<[Vec<u8>; 2]> = OnceLock::new();
+/// Files of scenes that have one of everything between them.
+fn files() -> &'static [Vec<u8>; 4] {
+    static FILES: OnceLock<[Vec<u8>; 4]> = OnceLock::new();
     FILES.get_or_init(|| {
-        [everything(), (builtin::find("workshop").unwrap().build)()].map(|mut desc| {
+        let still_life = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/still-life.toml");
+        let still_life = file::read(still_life).unwrap().desc;
+        let [everything, workshop, shapes] =
+            ["everything", "workshop", "shapes"].map(|name| (builtin::find(name).unwrap().build)());
+        [everything, workshop, shapes, still_life].map(|mut desc| {
             (desc.camera.width, desc.camera.height) = (6, 6);
             desc.render.max_depth = 5;
             file_of(&desc)
@@ -243,7 +247,7 @@ proptest! {
     /// opened can be rendered, by both trees, without a panic and in little time.
     #[test]
     fn hostile_arenas_are_refused_or_harmless(
-        which in 0..2_usize,
+        which in 0..4_usize,
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), value()), 1..12),
     ) {
         let mut file = files()[which].clone();
@@ -268,7 +272,7 @@ proptest! {
     /// The same for any bytes of the file.
     #[test]
     fn hostile_files_are_refused_or_harmless(
-        which in 0..2_usize,
+        which in 0..4_usize,
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8),
         cut in prop::option::of(any::<prop::sample::Index>()),
     ) {
