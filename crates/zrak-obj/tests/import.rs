@@ -264,3 +264,41 @@ fn what_is_wrong_is_shown_at_its_place() {
     let error = import(Path::new("none.obj"), &ImportOptions::default()).unwrap_err();
     assert!(error.to_string().contains("cannot read none.obj"), "{error}");
 }
+
+#[test]
+fn damaged_materials_do_no_harm() {
+    let good = "newmtl m\nKd 0.5 0.5 0.5\nKs 1 1 1\nNs 96\nillum 7\nd 0.5\nTf 1 1 1\nNi 1.5\n\
+                map_Kd -s 1 2 3 -o 0.5 -mm 0 1 -clamp on a b.png\nbump -bm 0.2 -imfchan r c.png\n\
+                Pr 0.2\nmap_Pm d.png\nnorm e.png\nKe 1 1 1\nmap_d a b.png\nnewmtl n\nKd 1 0 0\n";
+    let obj = format!("mtllib a.mtl\n{SQUARE}usemtl m\nf 1/1 2/1 3/1 4/1\nusemtl n\nf 1 2 3\n");
+    let folder = Folder::new(&[("a.obj", &obj)]);
+    let mut state = 1_u32;
+    let mut random = |n: usize| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as usize % n
+    };
+    let words: [&[u8]; 8] =
+        [b"-", b"\n", b" ", b"1e308", b"-s ", b"map_Kd ", b"\xff", b"newmtl m\n"];
+    for _ in 0..2000 {
+        let mut bytes = good.as_bytes().to_vec();
+        for _ in 0..=random(4) {
+            let at = random(bytes.len());
+            match random(3) {
+                0 => bytes.truncate(at),
+                1 => bytes[at] = random(256) as u8,
+                _ => {
+                    let word = words[random(words.len())];
+                    bytes.splice(at..at, word.iter().copied());
+                }
+            }
+            if bytes.is_empty() {
+                break;
+            }
+        }
+        std::fs::write(folder.path("a.mtl"), &bytes).unwrap();
+        if let Ok(imported) = folder.import("a.obj") {
+            let problems = validate(&imported.desc);
+            assert_eq!(problems, [], "{}", String::from_utf8_lossy(&bytes));
+        }
+    }
+}

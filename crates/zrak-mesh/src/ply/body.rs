@@ -13,7 +13,7 @@ pub(super) fn parse(bytes: &[u8], header: &Header, limits: &Limits) -> Result<Tr
     let mut mesh = TriangleMesh::default();
     let mut source = Source { bytes, at: header.body, format: header.format, line: header.n_lines };
     for element in &header.elements {
-        source.check_size(element, limits)?;
+        source.check_size(element, mesh.n_bytes() as u64, limits)?;
         match element.name.as_str() {
             "vertex" => vertices(&mut source, element, &mut mesh)?,
             "face" => faces(&mut source, element, &mut mesh, limits)?,
@@ -37,7 +37,7 @@ pub(super) struct Source<'a> {
 
 impl Source<'_> {
     /// Refuses an element that the rest of the file cannot hold, before memory is taken for it.
-    fn check_size(&self, element: &Element, limits: &Limits) -> Result<(), Error> {
+    fn check_size(&self, element: &Element, taken: u64, limits: &Limits) -> Result<(), Error> {
         // In text, a record takes a line; in bytes, its numbers.
         let smallest: u64 = match self.format {
             Format::Ascii => 1,
@@ -55,8 +55,13 @@ impl Source<'_> {
                 element.count, element.name
             )));
         }
-        // What a vertex or a face takes in memory, at most.
-        if element.count.saturating_mul(60) > limits.max_bytes {
+        // What a vertex takes in memory at most, and a face at least.
+        let each = match element.name.as_str() {
+            "vertex" => 64,
+            "face" => 12,
+            _ => 0,
+        };
+        if element.count.saturating_mul(each).saturating_add(taken) > limits.max_bytes {
             return Err(Error::new(format!(
                 "{} elements `{}` take more memory than the limit of {} bytes",
                 element.count, element.name, limits.max_bytes

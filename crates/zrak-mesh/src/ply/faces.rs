@@ -32,6 +32,7 @@ pub(super) fn faces(
         if !is_done {
             polygons(source, element, &layout, mesh, limits)?;
         }
+        check_memory(mesh, limits)?;
         return name_groups(mesh);
     }
     let group = element.properties.iter().position(is_group);
@@ -95,8 +96,10 @@ fn beyond(face: u64, corner: f64, n_vertices: usize) -> Error {
 }
 
 fn check_memory(mesh: &TriangleMesh, limits: &Limits) -> Result<(), Error> {
-    if (mesh.triangles.len() as u64).saturating_mul(12) > limits.max_bytes {
-        return Err(Error::new("the triangles take more memory than the limit allows"));
+    if mesh.n_bytes() as u64 > limits.max_bytes {
+        let message =
+            format!("the mesh takes more memory than the limit of {} bytes", limits.max_bytes);
+        return Err(Error::new(message));
     }
     Ok(())
 }
@@ -274,5 +277,5 @@ fn polygons(
         }
     }
     source.at = source.bytes.len() - rest.len();
-    check_memory(mesh, limits)
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! Tests.
 
 mod camera;
+mod meshes;
 mod shapes;
 mod surfaces;
 mod transform;
