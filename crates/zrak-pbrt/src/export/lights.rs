@@ -51,8 +51,11 @@ impl Writer<'_, '_> {
     /// Writes a background as a picture of all directions.
     fn baked(&mut self, background: &BackgroundDesc) -> Result<(), SceneError> {
         let alone = SceneDesc { background: background.clone(), ..SceneDesc::default() };
-        let options =
-            LowerOptions { allow_external: true, embedded: self.embedded.clone(), ..LowerOptions::new(self.base_dir) };
+        let options = LowerOptions {
+            allow_external: true,
+            embedded: self.embedded.clone(),
+            ..LowerOptions::new(self.base_dir)
+        };
         let arena = lower(&alone, &options).map_err(|problems| {
             failure(&problems.first().map_or_else(String::new, ToString::to_string))
         })?;

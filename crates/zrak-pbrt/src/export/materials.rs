@@ -75,7 +75,10 @@ impl Writer<'_, '_> {
             }
             MaterialDesc::CoatedDiffuse { color, coat } => {
                 let rough = self.roughness(&[("", &coat.roughness)])?;
-                kind("coateddiffuse") + &self.color("reflectance", color)? + &rough + &of_coat(coat, "")
+                kind("coateddiffuse")
+                    + &self.color("reflectance", color)?
+                    + &rough
+                    + &of_coat(coat, "")
             }
             MaterialDesc::CoatedConductor { metal, metal_roughness, coat } => {
                 let rough = self.roughness(&[
@@ -108,7 +111,8 @@ impl Writer<'_, '_> {
 
     /// Roughnesses, which pbrt maps all or none of a material's.
     fn roughness(&mut self, all: &[(&str, &RoughnessDesc)]) -> Result<String> {
-        let is_mapped = all.iter().all(|(_, r)| r.is_smooth() || r.map == RoughnessMap::Sqrt);
+        let is_mapped = all.iter().any(|(_, r)| r.map == RoughnessMap::Sqrt)
+            && all.iter().all(|(_, r)| r.is_smooth() || r.map == RoughnessMap::Sqrt);
         let mut out = String::new();
         for (prefix, roughness) in all {
             let map = if is_mapped { RoughnessMap::Alpha } else { roughness.map };
@@ -125,7 +129,11 @@ impl Writer<'_, '_> {
                 }
             }
         }
-        out += if is_mapped { " \"bool remaproughness\" true" } else { " \"bool remaproughness\" false" };
+        out += if is_mapped {
+            " \"bool remaproughness\" true"
+        } else {
+            " \"bool remaproughness\" false"
+        };
         Ok(out)
     }
 
@@ -148,11 +156,8 @@ impl Writer<'_, '_> {
              whichever is nearest",
         );
         let is_most = |x: &ScalarDesc| matches!(x, ScalarDesc::Value(x) if *x >= 0.5);
-        let rough = RoughnessDesc {
-            u: p.specular_roughness.clone(),
-            v: None,
-            map: RoughnessMap::Square,
-        };
+        let rough =
+            RoughnessDesc { u: p.specular_roughness.clone(), v: None, map: RoughnessMap::Square };
         let rough = self.roughness(&[("", &rough)])?;
         let eta = param("float", "eta", [p.specular_ior]);
         if is_most(&p.transmission_weight) {

@@ -109,7 +109,8 @@ pub(super) fn inline(mesh: &TriangleMesh) -> String {
 fn part_of(mesh: &TriangleMesh, group: u32) -> TriangleMesh {
     let mut part = TriangleMesh::default();
     let mut known: HashMap<u32, u32> = HashMap::new();
-    for (triangle, _) in mesh.triangles.iter().zip(&mesh.face_groups).filter(|(_, g)| **g == group) {
+    for (triangle, _) in mesh.triangles.iter().zip(&mesh.face_groups).filter(|(_, g)| **g == group)
+    {
         let corners = triangle.map(|v| {
             *known.entry(v).or_insert_with(|| {
                 let i = v as usize;

@@ -52,7 +52,14 @@ impl Writer<'_, '_> {
         let still = |start: Transform| Path { start, end: None };
         match object {
             ObjectDesc::Sphere {
-                center, center_end, radius, z_min, z_max, phi_max_deg, material, transform,
+                center,
+                center_end,
+                radius,
+                z_min,
+                z_max,
+                phi_max_deg,
+                material,
+                transform,
             } => {
                 let is_whole = z_min.is_none() && z_max.is_none() && phi_max_deg.is_none();
                 let place = |center: Triple| {
@@ -146,7 +153,13 @@ impl Writer<'_, '_> {
         }
     }
 
-    fn instance(&mut self, prototype: &str, path: &Path, is_inside: bool, depth: usize) -> Result<()> {
+    fn instance(
+        &mut self,
+        prototype: &str,
+        path: &Path,
+        is_inside: bool,
+        depth: usize,
+    ) -> Result<()> {
         let desc = self.desc;
         if !is_inside && let Some(name) = self.prototype(prototype)? {
             self.out += "AttributeBegin\n";
@@ -161,7 +174,9 @@ impl Writer<'_, '_> {
                  moves neither",
             );
         }
-        objects.iter().try_for_each(|object| self.object_at(object, &path.start, is_inside, depth + 1))
+        objects
+            .iter()
+            .try_for_each(|object| self.object_at(object, &path.start, is_inside, depth + 1))
     }
 
     /// Name of the object that a prototype is; none if its instances have to be written out, because
@@ -258,7 +273,8 @@ impl Writer<'_, '_> {
         if flip {
             self.out += "ReverseOrientation\n";
         }
-        let _ = writeln!(self.out, "{}Shape {shape}{}\nAttributeEnd", shading.before, shading.params);
+        let _ =
+            writeln!(self.out, "{}Shape {shape}{}\nAttributeEnd", shading.before, shading.params);
         Ok(())
     }
 

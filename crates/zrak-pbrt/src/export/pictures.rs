@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use zrak_image::{
-    Format, Limits, Picture, Texels, TextureImage, Transfer, decode_texture,
-    srgb8_to_linear_table, srgb16_to_linear,
+    Format, Limits, Picture, Texels, TextureImage, Transfer, decode_texture, srgb8_to_linear_table,
+    srgb16_to_linear,
 };
 use zrak_scene::desc::ImageChannel;
 use zrak_scene::error::SceneError;
@@ -129,12 +129,18 @@ fn channel_of(image: &TextureImage, channel: ImageChannel, is_srgb: bool) -> Vec
         Texels::Srgb8(texels) => {
             let table = srgb8_to_linear_table();
             let linear = |v: u8| if is_srgb { table[usize::from(v)] } else { f32::from(v) / 255.0 };
-            texels.iter().map(|&[r, g, b, a]| pick([r, g, b].map(linear), f32::from(a) / 255.0)).collect()
+            texels
+                .iter()
+                .map(|&[r, g, b, a]| pick([r, g, b].map(linear), f32::from(a) / 255.0))
+                .collect()
         }
         Texels::Srgb16(texels) => {
             let linear =
                 |v: u16| if is_srgb { srgb16_to_linear(v) } else { f32::from(v) / 65535.0 };
-            texels.iter().map(|&[r, g, b, a]| pick([r, g, b].map(linear), f32::from(a) / 65535.0)).collect()
+            texels
+                .iter()
+                .map(|&[r, g, b, a]| pick([r, g, b].map(linear), f32::from(a) / 65535.0))
+                .collect()
         }
         Texels::Linear(texels) => texels.iter().map(|&rgb| pick(rgb, 1.0)).collect(),
     }

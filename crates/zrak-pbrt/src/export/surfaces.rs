@@ -67,10 +67,15 @@ impl Writer<'_, '_> {
                     media = Some((of(&medium.inside), of(&medium.outside)));
                 }
                 let bumps = self.bumps(bump.as_ref(), normal_map.as_deref(), *normal_scale)?;
-                if let Some(MaterialDesc::DiffuseLight { color, sides }) = desc.materials.get(base) {
+                if let Some(MaterialDesc::DiffuseLight { color, sides }) = desc.materials.get(base)
+                {
                     light = light.or(Some((color, 1.0, *sides)));
                 }
-                if bumps.is_empty() { self.material(base)? } else { self.material_with(base, name, &bumps)? }
+                if bumps.is_empty() {
+                    self.material(base)?
+                } else {
+                    self.material_with(base, name, &bumps)?
+                }
             }
             _ => self.material(name)?,
         };
@@ -92,18 +97,29 @@ impl Writer<'_, '_> {
         Ok(shading)
     }
 
-    fn area_light(&mut self, color: &ColorDesc, strength: f64, sides: LightSides) -> Result<String> {
+    fn area_light(
+        &mut self,
+        color: &ColorDesc,
+        strength: f64,
+        sides: LightSides,
+    ) -> Result<String> {
         let desc = self.desc;
         let two_sided = if sides == LightSides::Both { " \"bool twosided\" true" } else { "" };
         let texture = match color {
             ColorDesc::Solid(color) => {
-                let scale = if strength == 1.0 { String::new() } else { param("float", "scale", [strength]) };
+                let scale = if strength == 1.0 {
+                    String::new()
+                } else {
+                    param("float", "scale", [strength])
+                };
                 return Ok(param("rgb", "L", *color) + &scale + two_sided);
             }
             ColorDesc::Texture(name) => desc.textures.get(name),
         };
         let (light, factor) = match texture {
-            Some(TextureDesc::Image { path, encoding, channel, scale, invert, mapping, .. }) => {
+            Some(TextureDesc::Image {
+                path, encoding, channel, scale, invert, mapping, ..
+            }) => {
                 let is_plain = *mapping == MappingDesc::Uv
                     && !invert
                     && *channel == ImageChannel::Color
@@ -142,7 +158,13 @@ impl Writer<'_, '_> {
         written
     }
 
-    pub(super) fn define_medium(&mut self, name: &str, sigma_a: [f64; 3], sigma_s: [f64; 3], g: f64) {
+    pub(super) fn define_medium(
+        &mut self,
+        name: &str,
+        sigma_a: [f64; 3],
+        sigma_s: [f64; 3],
+        g: f64,
+    ) {
         let params = word("string", "type", "homogeneous")
             + &param("rgb", "sigma_a", sigma_a)
             + &param("rgb", "sigma_s", sigma_s)

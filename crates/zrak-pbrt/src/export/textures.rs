@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use zrak_scene::desc::{
     ColorDesc, FractalPattern, ImageChannel, ImageEncoding, ImageFilter, MappingDesc, NoisePattern,
-    ScaleDesc, ScalarDesc, TextureDesc, TransformStep, WrapMode,
+    ScalarDesc, ScaleDesc, TextureDesc, TransformStep, WrapMode,
 };
 use zrak_scene::error::SceneError;
 use zrak_scene::lower::Transform;
@@ -64,7 +64,12 @@ impl Writer<'_, '_> {
     }
 
     /// Name of a texture that is written as one of colours or of numbers, moved by `map`.
-    pub(super) fn texture(&mut self, name: &str, is_float: bool, map: &Transform) -> Result<String> {
+    pub(super) fn texture(
+        &mut self,
+        name: &str,
+        is_float: bool,
+        map: &Transform,
+    ) -> Result<String> {
         let key = format!("{name}|{is_float}|{:?}", map.rows);
         if let Some(known) = self.textures.get(&key) {
             return Ok(known.clone());
@@ -105,7 +110,11 @@ impl Writer<'_, '_> {
                 let params = self.both(("tex1", even), ("tex2", odd), is_float, map)?;
                 let cube = TransformStep::Scale(ScaleDesc::Uniform(*scale));
                 let map = Transform::of_steps(&[cube]).then(map);
-                Parts { class: "checkerboard", params: params + &param("integer", "dimension", [3]), map }
+                Parts {
+                    class: "checkerboard",
+                    params: params + &param("integer", "dimension", [3]),
+                    map,
+                }
             }
             TextureDesc::UvChecker { even, odd, mapping } => {
                 let params = self.both(("tex1", even), ("tex2", odd), is_float, map)?;
@@ -128,10 +137,13 @@ impl Writer<'_, '_> {
                 flat("mix", params + &self.scalar_under("amount", amount, map)?)
             }
             TextureDesc::Multiply { a, b } => {
-                let is_one = |c: &ColorDesc| matches!(c, ColorDesc::Solid([r, g, b]) if r == g && g == b);
+                let is_one =
+                    |c: &ColorDesc| matches!(c, ColorDesc::Solid([r, g, b]) if r == g && g == b);
                 let (tex, scale) = if is_one(a) && !is_one(b) { (b, a) } else { (a, b) };
                 if !is_float && !is_one(scale) && !self.is_number(scale) {
-                    self.warn("of products of two colours pbrt's has the red of the second for all three");
+                    self.warn(
+                        "of products of two colours pbrt's has the red of the second for all three",
+                    );
                 }
                 let tex = self.input("tex", tex, is_float, map)?;
                 flat("scale", tex + &self.input("scale", scale, true, map)?)
@@ -185,7 +197,8 @@ impl Writer<'_, '_> {
                     NoisePattern::Noise => ("fbm", param("integer", "octaves", [1])),
                     NoisePattern::Turbulence | NoisePattern::Marble => (
                         "wrinkled",
-                        param("integer", "octaves", [*octaves]) + &param("float", "roughness", [0.5]),
+                        param("integer", "octaves", [*octaves])
+                            + &param("float", "roughness", [0.5]),
                     ),
                 };
                 let noise = Parts { class, params, map: cells(*scale, map) };
@@ -222,7 +235,15 @@ impl Writer<'_, '_> {
         map: &Transform,
     ) -> Result<Parts> {
         let TextureDesc::Image {
-            path, filter, wrap_u, wrap_v, encoding, channel, scale, invert, mapping,
+            path,
+            filter,
+            wrap_u,
+            wrap_v,
+            encoding,
+            channel,
+            scale,
+            invert,
+            mapping,
         } = texture
         else {
             return Ok(Parts { class: "constant", params: String::new(), map: *map });

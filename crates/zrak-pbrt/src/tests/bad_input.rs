@@ -58,9 +58,17 @@ const IN_WORLD: &[(&str, &str, &str)] = &[
     ),
     ("MakeNamedMaterial \"a\" \"rgb reflectance\" [1 1 1]", "no \"string type\"", "\"a\""),
     ("Material \"difuse\"", "did you mean \"diffuse\"?", "\"difuse\""),
-    ("Material \"diffuse\" \"texture reflectance\" \"a\"", "no spectrum texture \"a\"", "\"texture reflectance\""),
+    (
+        "Material \"diffuse\" \"texture reflectance\" \"a\"",
+        "no spectrum texture \"a\"",
+        "\"texture reflectance\"",
+    ),
     ("Shape \"sphere\" \"texture alpha\" \"a\"", "no float texture \"a\"", "\"texture alpha\""),
-    ("Texture \"a\" \"spectrum\" \"scale\" \"texture tex\" \"b\"", "no spectrum texture \"b\"", "\"texture tex\""),
+    (
+        "Texture \"a\" \"spectrum\" \"scale\" \"texture tex\" \"b\"",
+        "no spectrum texture \"b\"",
+        "\"texture tex\"",
+    ),
     ("Texture \"a\" \"colour\" \"constant\"", "of \"colour\"", "\"colour\""),
     ("Texture \"a\" \"spectrum\" \"imagemop\"", "did you mean \"imagemap\"?", "\"imagemop\""),
     ("Texture \"a\" \"spectrum\" \"imagemap\"", "needs a \"string filename\"", "\"imagemap\""),
@@ -76,32 +84,68 @@ const IN_WORLD: &[(&str, &str, &str)] = &[
     ("ObjectBegin \"a\" ObjectInstance \"b\" ObjectEnd", "cannot be placed within", "\"b\""),
     ("MediumInterface \"fog\" \"\"", "there is no medium \"fog\"", "\"fog\""),
     ("MakeNamedMedium \"fog\" \"float g\" 0", "no \"string type\"", "\"fog\""),
-    ("MakeNamedMedium \"fog\" \"string type\" \"homogenous\"", "did you mean \"homogeneous\"?", "\"string type\""),
+    (
+        "MakeNamedMedium \"fog\" \"string type\" \"homogenous\"",
+        "did you mean \"homogeneous\"?",
+        "\"string type\"",
+    ),
     (
         "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"string preset\" \"Wholmilk\"",
         "did you mean \"Wholemilk\"?",
         "\"string preset\"",
     ),
-    ("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"float g\" 1", "between -1 and 1", "\"float g\""),
+    (
+        "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"float g\" 1",
+        "between -1 and 1",
+        "\"float g\"",
+    ),
     ("ColorSpace \"srbg\"", "did you mean \"srgb\"?", "\"srbg\""),
     ("Attribute \"shapes\" \"float radius\" 1", "did you mean \"shape\"?", "\"shapes\""),
     ("Option \"bool forcedifuse\" true", "did you mean \"forcediffuse\"?", "\"bool forcedifuse\""),
     // Materials.
     ("Material \"dielectric\" \"float eta\" 0", "must be from 0.001", "\"float eta\""),
     ("Material \"dielectric\" \"rgb eta\" [1 1 1]", "index of refraction", "\"rgb eta\""),
-    ("Material \"diffuse\" \"rgb reflectance\" [1 1]", "must have three numbers", "\"rgb reflectance\""),
-    ("Material \"diffuse\" \"blackbody reflectance\" 3000", "cannot be a light", "\"blackbody reflectance\""),
-    ("Material \"diffuse\" \"rgb reflectance\" [1 1 1] \"string displacement", "no end", "\"string displacement"),
+    (
+        "Material \"diffuse\" \"rgb reflectance\" [1 1]",
+        "must have three numbers",
+        "\"rgb reflectance\"",
+    ),
+    (
+        "Material \"diffuse\" \"blackbody reflectance\" 3000",
+        "cannot be a light",
+        "\"blackbody reflectance\"",
+    ),
+    (
+        "Material \"diffuse\" \"rgb reflectance\" [1 1 1] \"string displacement",
+        "no end",
+        "\"string displacement",
+    ),
     (
         "Material \"conductor\" \"spectrum eta\" [400 1 300 2] \"spectrum k\" [400 1]",
         "must increase",
         "\"spectrum eta\"",
     ),
-    ("Material \"conductor\" \"spectrum eta\" \"metal-Ag-etta\"", "did you mean \"metal-Ag-eta\"?", "\"spectrum eta\""),
-    ("Material \"conductor\" \"rgb eta\" [1 1 1] \"rgb reflectance\" [1 1 1]", "leave out one", "\"rgb reflectance\""),
-    ("Material \"coateddiffuse\" \"float thickness\" -1", "`thickness` must be", "\"float thickness\""),
+    (
+        "Material \"conductor\" \"spectrum eta\" \"metal-Ag-etta\"",
+        "did you mean \"metal-Ag-eta\"?",
+        "\"spectrum eta\"",
+    ),
+    (
+        "Material \"conductor\" \"rgb eta\" [1 1 1] \"rgb reflectance\" [1 1 1]",
+        "leave out one",
+        "\"rgb reflectance\"",
+    ),
+    (
+        "Material \"coateddiffuse\" \"float thickness\" -1",
+        "`thickness` must be",
+        "\"float thickness\"",
+    ),
     ("Material \"mix\" \"string materials\" [\"a\"]", "two `materials`", "\"mix\""),
-    ("Material \"mix\" \"string materials\" [\"a\" \"b\"]", "there is no material", "\"string materials\""),
+    (
+        "Material \"mix\" \"string materials\" [\"a\" \"b\"]",
+        "there is no material",
+        "\"string materials\"",
+    ),
     (
         "MakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [\"a\" \"a\"]",
         "made of itself",
@@ -130,7 +174,11 @@ const IN_WORLD: &[(&str, &str, &str)] = &[
     ("Shape \"trianglemesh\" \"point3 P\" [0 0 0 1]", "no multiple of 3", "\"point3 P\""),
     ("Shape \"trianglemesh\" \"point3 P\" []", "needs", "\"trianglemesh\""),
     ("Shape \"trianglemesh\" \"integer indices\" [0 1 2]", "needs vertices", "\"trianglemesh\""),
-    ("Shape \"trianglemesh\" \"point3 P\" [0 0 1e39 1 0 0 0 1 0]", "not finite", "\"trianglemesh\""),
+    (
+        "Shape \"trianglemesh\" \"point3 P\" [0 0 1e39 1 0 0 0 1 0]",
+        "not finite",
+        "\"trianglemesh\"",
+    ),
     (
         "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 1]",
         "3 vertices but 1 normals",
@@ -138,7 +186,11 @@ const IN_WORLD: &[(&str, &str, &str)] = &[
     ),
     ("Shape \"plymesh\"", "needs a \"string filename\"", "\"plymesh\""),
     ("Shape \"plymesh\" \"string filename\" \"none.ply\"", "cannot read", "\"plymesh\""),
-    ("Shape \"plymesh\" \"string filename\" \"../a.ply\"", "outside of the scene's folder", "\"plymesh\""),
+    (
+        "Shape \"plymesh\" \"string filename\" \"../a.ply\"",
+        "outside of the scene's folder",
+        "\"plymesh\"",
+    ),
     // Lights.
     ("LightSource \"lamp\"", "unknown light \"lamp\"", "\"lamp\""),
     ("LightSource \"spot\" \"float coneangle\" 200", "`coneangle` must be", "\"float coneangle\""),
@@ -146,7 +198,11 @@ const IN_WORLD: &[(&str, &str, &str)] = &[
     ("LightSource \"point\" \"blackbody I\" 0", "no temperature", "\"blackbody I\""),
     ("LightSource \"point\" \"rgb I\" [1e12 1 1]", "from 0 to 1e9", "LightSource"),
     ("AreaLightSource \"difuse\"", "did you mean \"diffuse\"?", "\"difuse\""),
-    ("LightSource \"infinite\" \"string filename\" \"a.exr\" \"rgb L\" [1 1 1]", "leave out one", "\"string filename\""),
+    (
+        "LightSource \"infinite\" \"string filename\" \"a.exr\" \"rgb L\" [1 1 1]",
+        "leave out one",
+        "\"string filename\"",
+    ),
     // Files.
     ("Include \"/etc/passwd\"", "outside of the scene's folder", "\"/etc/passwd\""),
     ("Include \"scene.pbrt\"", "includes itself", "\"scene.pbrt\""),
@@ -162,11 +218,7 @@ const WHOLE: &[(&str, &str, &str)] = &[
     ("WorldBegin", "no Camera", "WorldBegin"),
     ("Camera \"fisheye\"\nWorldBegin", "unknown camera", "\"fisheye\""),
     ("Camera \"perspective\" \"float fov\" 180\nWorldBegin", "`fov` must be", "\"float fov\""),
-    (
-        "Camera \"perspective\" \"float shutteropen\" 2\nWorldBegin",
-        "before it opens",
-        "Camera",
-    ),
+    ("Camera \"perspective\" \"float shutteropen\" 2\nWorldBegin", "before it opens", "Camera"),
     ("Camera \"realistic\"\nWorldBegin", "\"string lensfile\"", "Camera"),
     ("Film \"rgb\" \"integer xresolution\" 0", "from 1 to 65536", "\"integer xresolution\""),
     ("Film \"rgb\" \"integer xresolution\" 1.5", "a whole number", "\"integer xresolution\""),
@@ -253,7 +305,13 @@ fn includes_in_a_circle_and_too_deep_are_refused() {
 
     let names: Vec<String> = (0..100).map(|i| format!("{i}.pbrt")).collect();
     let texts: Vec<String> = (1..=100)
-        .map(|i| if i == 1 { format!("{HEAD}Include \"1.pbrt\"") } else { format!("Include \"{i}.pbrt\"") })
+        .map(|i| {
+            if i == 1 {
+                format!("{HEAD}Include \"1.pbrt\"")
+            } else {
+                format!("Include \"{i}.pbrt\"")
+            }
+        })
         .collect();
     let files: Vec<(&str, &str)> =
         names.iter().zip(&texts).map(|(n, t)| (n.as_str(), t.as_str())).collect();
@@ -271,7 +329,12 @@ fn nesting_is_bounded() {
         assert!(error.to_string().contains("nested more than"), "{error}");
     }
     let many: String = (0..300).map(|i| format!(" \"float p{i}\" 1")).collect();
-    is_refused(&format!("{HEAD}Attribute \"shape\"{many}"), "more than 256 attributes", "\"shape\"").unwrap();
+    is_refused(
+        &format!("{HEAD}Attribute \"shape\"{many}"),
+        "more than 256 attributes",
+        "\"shape\"",
+    )
+    .unwrap();
     // One of a name counts, however often it is set.
     let often = "Attribute \"shape\" \"float radius\" 2\n".repeat(50_000);
     let desc = super::read(&format!("{often}Shape \"sphere\"")).desc;

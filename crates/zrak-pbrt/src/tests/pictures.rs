@@ -62,30 +62,42 @@ fn every_texture_has_its_parameters() {
     assert_eq!(textures["spectrum:mix"], mix);
     let corners = [[0.1; 3], [1.0; 3], [0.0; 3], [0.9; 3]];
     assert_eq!(textures["float:bilerp"], TextureDesc::Bilerp { corners, mapping: MappingDesc::Uv });
-    let TextureDesc::UvChecker { even, odd, mapping } = &textures["spectrum:check"] else { panic!() };
+    let TextureDesc::UvChecker { even, odd, mapping } = &textures["spectrum:check"] else {
+        panic!()
+    };
     assert_eq!((even, odd), (&[1.0; 3].into(), &[0.0; 3].into()));
     let matrix = [[4.0, 0.0, 0.0], [0.0, 1.0, 0.5]];
     assert_eq!(*mapping, MappingDesc::UvAffine { matrix });
-    assert!(matches!(&textures["float:cubes"], TextureDesc::Placed { transform, .. } if transform.len() == 1));
-    let TextureDesc::Dots { mapping: MappingDesc::Planar { matrix }, .. } = &textures["spectrum:planar"] else {
+    assert!(
+        matches!(&textures["float:cubes"], TextureDesc::Placed { transform, .. } if transform.len() == 1)
+    );
+    let TextureDesc::Dots { mapping: MappingDesc::Planar { matrix }, .. } =
+        &textures["spectrum:planar"]
+    else {
         panic!()
     };
     // In the texture's space, which is moved by 1 along x.
     assert_eq!(*matrix, [[0.0, 0.0, 2.0, 0.5], [0.0, 1.0, 0.0, 0.0]]);
-    let TextureDesc::Image { filter, wrap_u, wrap_v, encoding, scale, mapping, .. } = &textures["spectrum:ball"]
+    let TextureDesc::Image { filter, wrap_u, wrap_v, encoding, scale, mapping, .. } =
+        &textures["spectrum:ball"]
     else {
         panic!()
     };
     assert_eq!((filter, scale), (&ImageFilter::Nearest, &2.0));
-    assert_eq!((wrap_u, wrap_v, encoding), (&WrapMode::Clamp, &WrapMode::Clamp, &ImageEncoding::Linear));
+    assert_eq!(
+        (wrap_u, wrap_v, encoding),
+        (&WrapMode::Clamp, &WrapMode::Clamp, &ImageEncoding::Linear)
+    );
     assert!(matches!(mapping, MappingDesc::Spherical { transform } if transform.len() == 1));
     // 1 - s x = (1 - s) 1 + s (1 - x).
-    let TextureDesc::Mix { a, b: ColorDesc::Texture(inner), amount } = &textures["float:not"] else {
+    let TextureDesc::Mix { a, b: ColorDesc::Texture(inner), amount } = &textures["float:not"]
+    else {
         panic!()
     };
     assert_eq!((a, amount), (&[1.0; 3].into(), &ScalarDesc::Value(0.25)));
     assert!(matches!(&textures[inner], TextureDesc::Image { invert: true, scale: 1.0, .. }));
-    let TextureDesc::Placed { texture: ColorDesc::Texture(inner), .. } = &textures["float:fbm"] else {
+    let TextureDesc::Placed { texture: ColorDesc::Texture(inner), .. } = &textures["float:fbm"]
+    else {
         panic!()
     };
     assert!(matches!(&textures[inner], TextureDesc::Fractal { octaves: 3, roughness: 0.4, .. }));
@@ -113,10 +125,13 @@ fn textures_are_for_every_parameter() {
     )
     .desc;
     let ObjectDesc::Sphere { material, .. } = &desc.objects[0] else { panic!() };
-    let MaterialDesc::Surface { base, alpha, bump, .. } = &desc.materials[material] else { panic!() };
+    let MaterialDesc::Surface { base, alpha, bump, .. } = &desc.materials[material] else {
+        panic!()
+    };
     let f = ScalarDesc::Texture("float:f".to_owned());
     assert_eq!((alpha.as_ref(), bump.as_ref()), (Some(&f), Some(&f)));
-    let MaterialDesc::CoatedConductor { metal, metal_roughness, coat } = &desc.materials[base] else {
+    let MaterialDesc::CoatedConductor { metal, metal_roughness, coat } = &desc.materials[base]
+    else {
         panic!()
     };
     let c = ColorDesc::Texture("spectrum:c".to_owned());
@@ -137,7 +152,8 @@ fn names_may_come_later() {
     )
     .desc;
     let ObjectDesc::Sphere { material, .. } = &desc.objects[0] else { panic!() };
-    let MaterialDesc::Surface { base, bump: Some(_), alpha: Some(_), .. } = &desc.materials[material]
+    let MaterialDesc::Surface { base, bump: Some(_), alpha: Some(_), .. } =
+        &desc.materials[material]
     else {
         panic!("{:?}", desc.materials[material])
     };
@@ -160,12 +176,16 @@ fn numbers_are_the_alpha_of_pictures_that_have_one() {
             [&length[..], kind, data, &crc.sum().to_be_bytes()].concat()
         };
         let head = [0, 0, 0, 1, 0, 0, 0, 1, 8, 6, 0, 0, 0];
-        let mut zlib =
-            flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::default());
+        let mut zlib = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::default());
         std::io::Write::write_all(&mut zlib, &[0, 255, 255, 255, 128]).unwrap();
         let data = zlib.finish().unwrap();
-        [b"\x89PNG\r\n\x1a\n".to_vec(), chunk(b"IHDR", &head), chunk(b"IDAT", &data), chunk(b"IEND", &[])]
-            .concat()
+        [
+            b"\x89PNG\r\n\x1a\n".to_vec(),
+            chunk(b"IHDR", &head),
+            chunk(b"IDAT", &data),
+            chunk(b"IEND", &[]),
+        ]
+        .concat()
     };
     std::fs::write(folder.path("a.png"), png).unwrap();
     let desc = import(&folder.path("scene.pbrt"), &ImportOptions::default()).unwrap().desc;
@@ -186,12 +206,17 @@ fn pictures_shine() {
     let desc = &imported.desc;
     let emission = |i: usize| {
         let ObjectDesc::Disk { material, .. } = &desc.objects[i] else { panic!() };
-        let MaterialDesc::Surface { emission: Some(ColorDesc::Texture(name)), emission_strength, .. } =
-            &desc.materials[material]
+        let MaterialDesc::Surface {
+            emission: Some(ColorDesc::Texture(name)),
+            emission_strength,
+            ..
+        } = &desc.materials[material]
         else {
             panic!()
         };
-        let TextureDesc::Image { wrap_u: WrapMode::Clamp, .. } = &desc.textures[name] else { panic!() };
+        let TextureDesc::Image { wrap_u: WrapMode::Clamp, .. } = &desc.textures[name] else {
+            panic!()
+        };
         *emission_strength
     };
     assert_eq!(emission(0), 3.0);
@@ -207,7 +232,9 @@ fn pictures_shine() {
 fn illuminance_is_that_of_the_upper_half() {
     let folder = Folder::new(&[(
         "scene.pbrt",
-        &format!("{HEAD}LightSource \"infinite\" \"string filename\" \"even.exr\" \"float illuminance\" 6\n"),
+        &format!(
+            "{HEAD}LightSource \"infinite\" \"string filename\" \"even.exr\" \"float illuminance\" 6\n"
+        ),
     )]);
     let even = Picture { width: 64, height: 64, pixels: vec![[2.0; 3]; 64 * 64] };
     let bytes = encode(Format::Exr, &even, None, Transfer::Srgb).unwrap();
@@ -228,10 +255,14 @@ fn power_is_spread_over_the_area() {
     )
     .desc;
     let strength = |i: usize| {
-        let (ObjectDesc::Sphere { material, .. } | ObjectDesc::Mesh { material, .. }) = &desc.objects[i] else {
+        let (ObjectDesc::Sphere { material, .. } | ObjectDesc::Mesh { material, .. }) =
+            &desc.objects[i]
+        else {
             panic!()
         };
-        let MaterialDesc::Surface { emission_strength, .. } = &desc.materials[material] else { panic!() };
+        let MaterialDesc::Surface { emission_strength, .. } = &desc.materials[material] else {
+            panic!()
+        };
         *emission_strength
     };
     let pi = std::f64::consts::PI;
@@ -281,7 +312,8 @@ fn media_and_metals_are_known_by_name() {
     assert_eq!(desc.media["milk"].sigma_s, [25.5, 32.1, 37.7]);
     let reflectance = |i: usize| {
         let ObjectDesc::Sphere { material, .. } = &desc.objects[i] else { panic!() };
-        let MaterialDesc::Conductor { metal: ConductorDesc::Index { eta, k }, .. } = &desc.materials[material]
+        let MaterialDesc::Conductor { metal: ConductorDesc::Index { eta, k }, .. } =
+            &desc.materials[material]
         else {
             panic!()
         };

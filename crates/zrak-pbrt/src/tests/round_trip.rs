@@ -5,8 +5,8 @@ use std::path::Path;
 
 use zrak_scene::builtin;
 use zrak_scene::desc::{
-    BackgroundDesc, CameraDesc, ColorDesc, CurveForm, LightSides, MaterialDesc, MeshDesc, ObjectDesc, ScalarDesc,
-    SceneDesc, TextureDesc, TransformStep,
+    BackgroundDesc, CameraDesc, ColorDesc, CurveForm, LightSides, MaterialDesc, MeshDesc,
+    ObjectDesc, ScalarDesc, SceneDesc, TextureDesc, TransformStep,
 };
 use zrak_scene::lower::{Embedded, Transform};
 use zrak_scene::validate::validate;
@@ -77,7 +77,9 @@ impl Flat<'_> {
             TextureDesc::Mix { a, b, amount } => {
                 format!("mix({}, {}, {})", self.color(a), self.color(b), self.scalar(amount))
             }
-            TextureDesc::Multiply { a, b } => format!("product({}, {})", self.color(a), self.color(b)),
+            TextureDesc::Multiply { a, b } => {
+                format!("product({}, {})", self.color(a), self.color(b))
+            }
             TextureDesc::UvChecker { even, odd, mapping } => {
                 format!("checks({}, {}, {mapping:?})", self.color(even), self.color(odd))
             }
@@ -133,12 +135,21 @@ impl Flat<'_> {
             );
         }
         if let MaterialDesc::Surface {
-            base, emission, emission_strength, emission_sides, alpha, bump, normal_map, medium, ..
+            base,
+            emission,
+            emission_strength,
+            emission_sides,
+            alpha,
+            bump,
+            normal_map,
+            medium,
+            ..
         } = &material
         {
             let mut out = format!("surface({}", self.material(base));
             if let Some(emission) = emission {
-                out += &format!(", {} {emission_strength:?} {emission_sides:?}", self.color(emission));
+                out +=
+                    &format!(", {} {emission_strength:?} {emission_sides:?}", self.color(emission));
             }
             if let Some(alpha) = alpha {
                 out += &format!(", alpha {}", self.scalar(alpha));
@@ -153,7 +164,12 @@ impl Flat<'_> {
             return format!("{out}, {})", normal_map.is_some());
         }
         if let MaterialDesc::Mix { materials: [a, b], amount } = &material {
-            return format!("mix({}, {}, {})", self.material(a), self.material(b), self.scalar(amount));
+            return format!(
+                "mix({}, {}, {})",
+                self.material(a),
+                self.material(b),
+                self.scalar(amount)
+            );
         }
         // Textures by what they are.
         let mut names = BTreeMap::new();
@@ -168,7 +184,16 @@ impl Flat<'_> {
     fn object(&mut self, object: &ObjectDesc, outer: &Transform) {
         let at = |steps: &[TransformStep]| Transform::of_steps(steps).then(outer);
         let (shape, material) = match object {
-            ObjectDesc::Sphere { center, center_end, radius, z_min, z_max, phi_max_deg, material, transform } => {
+            ObjectDesc::Sphere {
+                center,
+                center_end,
+                radius,
+                z_min,
+                z_max,
+                phi_max_deg,
+                material,
+                transform,
+            } => {
                 let map = at(transform);
                 let place = |c: [f64; 3]| {
                     // A whole sphere is the same however it is turned.
@@ -176,12 +201,21 @@ impl Flat<'_> {
                         Some(s) if z_min.or(*z_max).or(*phi_max_deg).is_none() => {
                             format!("{:?}", s * radius)
                         }
-                        _ => format!("{:?} {radius:?}", map.rows),
+                        _ => {
+                            let moved = Transform::of_steps(&[TransformStep::Translate(c)]);
+                            format!("{:?} {radius:?}", moved.then(&map).rows)
+                        }
                     };
                     format!("{:?} {rows}", map.point(c))
                 };
                 let end = center_end.map(place);
-                (format!("sphere {} {end:?} {z_min:?} {z_max:?} {phi_max_deg:?}", place(*center)), material)
+                (
+                    format!(
+                        "sphere {} {end:?} {z_min:?} {z_max:?} {phi_max_deg:?}",
+                        place(*center)
+                    ),
+                    material,
+                )
             }
             ObjectDesc::Quad { corner, u, v, material, transform } => {
                 let sum = |a: &[f64; 3], b: &[f64; 3]| [0, 1, 2].map(|i| a[i] + b[i]);
@@ -197,9 +231,13 @@ impl Flat<'_> {
                 let points: Vec<[f64; 3]> = match self.desc.meshes[mesh].inlined() {
                     MeshDesc::Patches { positions, patches, .. } => {
                         let corners = patches.into_iter().flatten();
-                        let points: Vec<[f64; 3]> =
-                            corners.map(|v| map.point(positions[v as usize].map(f64::from))).collect();
-                        self.objects.push(rounded(&format!("patch {points:?} {}", self.material(material))));
+                        let points: Vec<[f64; 3]> = corners
+                            .map(|v| map.point(positions[v as usize].map(f64::from)))
+                            .collect();
+                        self.objects.push(rounded(&format!(
+                            "patch {points:?} {}",
+                            self.material(material)
+                        )));
                         return;
                     }
                     MeshDesc::Inline { positions, triangles, .. } => {
@@ -285,8 +323,14 @@ fn plain(desc: &SceneDesc) -> Plain {
     let lens = c.focus_distance * (c.defocus_angle_deg / 2.0).to_radians().tan();
     let camera = format!(
         "{:?} {view:?} {right:?} {:?} {:?} {} {} {lens:?} {:?} {} {:?}",
-        c.look_from, c.vfov_deg, c.projection, c.width, c.height,
-        if lens > 0.0 { c.focus_distance } else { 1.0 }, c.flip_x, c.medium.as_ref().map(|m| &desc.media[m])
+        c.look_from,
+        c.vfov_deg,
+        c.projection,
+        c.width,
+        c.height,
+        if lens > 0.0 { c.focus_distance } else { 1.0 },
+        c.flip_x,
+        c.medium.as_ref().map(|m| &desc.media[m])
     );
     let mut lights: Vec<String> = desc.lights.iter().map(|l| rounded(&format!("{l:?}"))).collect();
     lights.push(match &desc.background {
@@ -312,7 +356,10 @@ fn is_the_same(desc: &SceneDesc, base: &Path) {
     assert!(exported.warnings.is_empty(), "{:?}", exported.warnings);
     assert!(imported.warnings.is_empty(), "{:?}", imported.warnings);
     let (a, b) = (&desc.render, &imported.desc.render);
-    assert_eq!((a.samples_per_pixel, a.max_depth, a.seed), (b.samples_per_pixel, b.max_depth, b.seed));
+    assert_eq!(
+        (a.samples_per_pixel, a.max_depth, a.seed),
+        (b.samples_per_pixel, b.max_depth, b.seed)
+    );
 }
 
 /// Scenes of zrak's own, with their folders: those built in and those in the repository.
@@ -320,13 +367,17 @@ fn scenes() -> Vec<(String, SceneDesc, std::path::PathBuf)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let mut all: Vec<_> = builtin::all()
         .iter()
-        .map(|scene| (scene.name.to_owned(), scene.desc(), folder.clone()))
+        .map(|scene| (scene.name.to_owned(), (scene.build)(), folder.clone()))
         .collect();
     for entry in std::fs::read_dir(&folder).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|e| e == "toml") {
-            let (desc, _) = zrak_scene::file::read(&path).unwrap();
-            all.push((path.file_name().unwrap().to_string_lossy().into_owned(), desc, folder.clone()));
+            let desc = zrak_scene::file::read(&path).unwrap().desc;
+            all.push((
+                path.file_name().unwrap().to_string_lossy().into_owned(),
+                desc,
+                folder.clone(),
+            ));
         }
     }
     all
@@ -346,9 +397,14 @@ fn every_scene_is_written_and_read_and_from_then_on_stays_as_it_is() {
             assert_eq!(a, b, "{name}");
         }
         assert_eq!(a.objects.len(), b.objects.len(), "{name}");
-        let camera = |desc: &SceneDesc| plain(&SceneDesc { objects: Vec::new(), ..desc.clone() }).camera;
+        let camera =
+            |desc: &SceneDesc| plain(&SceneDesc { objects: Vec::new(), ..desc.clone() }).camera;
         assert_eq!(camera(&desc), camera(&once.desc), "{name}");
-        assert!(second.warnings.len() <= first.warnings.len().max(1), "{name}: {:?}", second.warnings);
+        assert!(
+            second.warnings.len() <= first.warnings.len().max(1),
+            "{name}: {:?}",
+            second.warnings
+        );
     }
 }
 
@@ -432,8 +488,9 @@ fn what_pbrt_can_say_comes_back_the_same() {
         transform_end = [{ translate = [2, 0, 0] }]
     "#;
     let folder = Folder::new(&[("all.toml", text)]);
-    let (desc, _) =
-        zrak_scene::file::read(&folder.path("all.toml")).unwrap_or_else(|error| panic!("{error}"));
+    let desc = zrak_scene::file::read(folder.path("all.toml"))
+        .unwrap_or_else(|error| panic!("{error}"))
+        .desc;
     is_the_same(&desc, folder.0.path());
 }
 
@@ -458,7 +515,8 @@ fn cameras_come_back_the_same() {
             desc.background = BackgroundDesc::Constant { color: [1.0, 2.0, 3.0] };
             if projection != Perspective {
                 // Not looked at.
-                desc.camera.vfov_deg = again(&desc, Path::new("."), &ExportOptions::default()).1.desc.camera.vfov_deg;
+                desc.camera.vfov_deg =
+                    again(&desc, Path::new("."), &ExportOptions::default()).1.desc.camera.vfov_deg;
             }
             is_the_same(&desc, Path::new("."));
         }
@@ -476,7 +534,10 @@ fn windows_show_the_same_part_of_the_view() {
         let [x0, x1, y0, y1] = c.window;
         let half = (c.vfov_deg / 2.0).to_radians().tan();
         let aspect = (f64::from(c.width) / (x1 - x0)) / (f64::from(c.height) / (y1 - y0));
-        [x0, x1].map(|x| half * aspect * (2.0 * x - 1.0)).into_iter().chain([y0, y1].map(|y| half * (1.0 - 2.0 * y)))
+        [x0, x1]
+            .map(|x| half * aspect * (2.0 * x - 1.0))
+            .into_iter()
+            .chain([y0, y1].map(|y| half * (1.0 - 2.0 * y)))
     };
     for (a, b) in corners(&desc.camera).zip(corners(&imported.desc.camera)) {
         assert!((a - b).abs() < 1e-9, "{:?} {:?}", desc.camera, imported.desc.camera);
