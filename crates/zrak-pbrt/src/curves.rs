@@ -120,8 +120,8 @@ fn elevated(points: &[Triple]) -> Vec<Triple> {
 fn of_quadratic_bspline(points: &[Triple]) -> Vec<Triple> {
     let middle = |i: usize| sum([points[i], points[i + 1]], [0.5, 0.5]);
     let mut quadratic = vec![middle(0)];
-    for i in 1..points.len() - 1 {
-        quadratic.extend([points[i], middle(i)]);
+    for (i, point) in points.iter().enumerate().take(points.len() - 1).skip(1) {
+        quadratic.extend([*point, middle(i)]);
     }
     elevated(&quadratic)
 }

@@ -32,7 +32,7 @@ impl Importer {
             }
             ("blackbody", Values::Numbers(x)) => {
                 let [kelvin] = x[..] else { return fault("must be one temperature, in kelvin") };
-                if !(kelvin >= 100.0 && kelvin < 1e7) {
+                if !(100.0..1e7).contains(&kelvin) {
                     return fault(
                         "is no temperature that shines: it must be from 100 to 1e7 kelvin",
                     );

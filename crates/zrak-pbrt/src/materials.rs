@@ -118,7 +118,7 @@ impl Importer {
         let ior = self.ior(params, &format!("{prefix}eta"), default_ior)?;
         let thickness = self.plain(params, "thickness", 0.01)?;
         let g = self.plain(params, "g", 0.0)?;
-        if !(thickness >= 0.0 && thickness <= 1e6) {
+        if !(0.0..=1e6).contains(&thickness) {
             let message = format!("`thickness` must be from 0 to 1e6, is {thickness}");
             return Err(Fault::new(&params.span_of("thickness"), message));
         }

@@ -63,7 +63,7 @@ impl What {
     pub(crate) fn missing(self, name: &str, span: &Span, desc: &SceneDesc) -> Fault {
         let (what, help) = self.words();
         let fault = Fault::new(span, format!("there is no {what} \"{name}\""));
-        match suggest::closest(name, self.all(desc).into_iter()) {
+        match suggest::closest(name, self.all(desc)) {
             Some(near) => fault.help(format!("did you mean \"{near}\"?")),
             None => fault.help(help),
         }
@@ -140,7 +140,7 @@ impl Importer {
                 dark.push((name.clone(), span.clone()));
             }
         }
-        dark.sort_by(|a, b| (a.1.file, a.1.bytes.start).cmp(&(b.1.file, b.1.bytes.start)));
+        dark.sort_by_key(|d| (d.1.file, d.1.bytes.start));
         for (name, span) in dark {
             if let Some(MaterialDesc::Surface { emission, .. }) = self.desc.materials.get_mut(&name)
             {

@@ -51,7 +51,7 @@ fn what_cannot_be_compiled_or_opened_is_explained() {
     assert_eq!(folder.list(), [""; 0]);
 
     folder.ok("compile quads -o a.zscene -q");
-    folder.fails("export a.zscene", 3, &["a compiled scene cannot be exported"]);
+    folder.fails("export a.zscene", 3, &["a compiled scene cannot be converted"]);
     let good = folder.read("a.zscene");
     let mut bad = good.clone();
     *bad.last_mut().unwrap() ^= 1;

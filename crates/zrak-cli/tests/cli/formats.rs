@@ -129,7 +129,7 @@ fn files_elsewhere_are_read_only_if_that_is_allowed() {
         property float y\nproperty float z\nelement face 1\n\
         property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
     );
-    let pbrt = "WorldBegin\nShape \"plymesh\" \"string filename\" \"../quad.ply\"\n";
+    let pbrt = "Camera \"perspective\"\nWorldBegin\nShape \"plymesh\" \"string filename\" \"../quad.ply\"\n";
     folder.write("in/mesh.pbrt", pbrt);
     let scene = folder.ok("export quads").stdout;
     let mesh = "[meshes]\nm = { kind = \"file\", path = \"../quad.ply\" }\n";
@@ -154,10 +154,10 @@ fn memory_is_bounded_for_every_format() {
     assert_eq!(ended.stderr, "");
     folder.write(
         "mesh.pbrt",
-        "WorldBegin\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]\n",
+        "Camera \"perspective\"\nWorldBegin\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]\n",
     );
     for (scene, bytes, words) in [
-        ("quad.gltf", "1k", "the file asks for more than"),
+        ("quad.gltf", "1k", "more than the 1024 bytes"),
         ("quad.toml", "500", "the file has more than the 500 bytes"),
         ("mesh.pbrt", "10", "the limit of 10 bytes"),
         ("final", "1M", "the scene takes more memory than the limit of 1048576 bytes"),

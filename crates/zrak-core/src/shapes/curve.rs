@@ -224,7 +224,7 @@ impl Seen {
         }
         let Rung { c, dc, b } = self.rung(u);
         let bb = b.x * b.x + b.y * b.y;
-        if !(bb > 0.0) {
+        if bb.is_nan() || bb <= 0.0 {
             return None;
         }
         // The point of the line across that is nearest to the ray, and what is left between them.

@@ -196,7 +196,7 @@ pub(super) fn hit_patch(corners: [Vec3; 4], ray: &Ray) -> Option<PatchHit> {
     // Both roots are one within rounding: the origin may be on the patch's outline.
     let discriminant = c1 * c1 - 4.0 * c0 * c2;
     let slack = gamma(16) * (c1 * c1 + 4.0 * abs(c0 * c2));
-    if !(discriminant >= -slack) {
+    if discriminant.is_nan() || discriminant < -slack {
         return None;
     }
     let root = sqrt(max(discriminant, 0.0));

@@ -127,7 +127,7 @@ fn n_cuts(points: &[Triple; 4], width: f64) -> u32 {
     while n < CUTS_MAX {
         let after = area(n + 1);
         // False for areas beyond the range of single precision.
-        if !(after < (1.0 - SAVING) * before) {
+        if after.is_nan() || after >= (1.0 - SAVING) * before {
             break;
         }
         before = after;

@@ -45,10 +45,8 @@ impl<'a> Meshes<'a> {
                         *n_uses.entry(mesh.as_str()).or_insert(0) += 1;
                     }
                     ObjectDesc::Group { objects, .. } => lists.push(objects),
-                    ObjectDesc::Instance { prototype, .. } => {
-                        if placed.insert(prototype.as_str()) {
-                            lists.extend(desc.prototypes.get(prototype).map(Vec::as_slice));
-                        }
+                    ObjectDesc::Instance { prototype, .. } if placed.insert(prototype.as_str()) => {
+                        lists.extend(desc.prototypes.get(prototype).map(Vec::as_slice));
                     }
                     _ => {}
                 }

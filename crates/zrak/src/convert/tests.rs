@@ -128,7 +128,7 @@ fn meshes_and_pictures_in_memory_become_files() {
     assert_same(&copy, &scene);
     // Beside each other, they share the files.
     let twin = folder.path().join("twin.toml");
-    assert_eq!(convert(&read, &twin).unwrap().files, [twin.clone()]);
+    assert_eq!(convert(&read, &twin).unwrap().files, std::slice::from_ref(&twin));
     assert_same(&twin, &scene);
 }
 
@@ -177,7 +177,7 @@ fn everything_becomes_gltf() {
     for scene in scenes {
         let path = folder.path().join("scene.glb");
         let converted = convert(&scene, &path).unwrap();
-        assert_eq!(converted.files, [path.clone()]);
+        assert_eq!(converted.files, std::slice::from_ref(&path));
         let read = load_scene(&path).unwrap();
         read.lower().unwrap();
         // Nothing is lost without a word.

@@ -98,8 +98,7 @@ fn random_corners(rng: &mut Rng) -> ([Vec3; 4], f64) {
 
 /// A scene of one patch.
 fn scene_of(corners: [Vec3; 4]) -> TestScene {
-    let mut scene = TestScene::default();
-    scene.positions = corners.to_vec();
+    let mut scene = TestScene { positions: corners.to_vec(), ..TestScene::default() };
     scene.meshes.push(Mesh { material: ANY_MATERIAL, ..bytemuck::Zeroable::zeroed() });
     scene.mesh_patches.push(MeshPatch { vertices: [0, 1, 2, 3], mesh: 0, flip: 0, _pad: [0; 2] });
     scene
