@@ -1,4 +1,4 @@
-//! Scene files of pbrt-v4, as scene descriptions.
+//! Scene files of pbrt-v4: read as scene descriptions, and written.
 //!
 //! The file is read directive by directive, as pbrt does it: each changes the graphics state or adds
 //! something that is made of it. What a description cannot say becomes the nearest thing that it can,
@@ -17,6 +17,7 @@ mod color;
 mod curves;
 mod directives;
 mod error;
+mod export;
 mod facts;
 mod given;
 mod lens;
@@ -42,6 +43,8 @@ mod textures;
 mod tests;
 
 use std::path::{Path, PathBuf};
+
+pub use export::{ExportOptions, Exported, Sink, export, export_to};
 
 use zrak_scene::desc::SceneDesc;
 use zrak_scene::error::SceneError;

@@ -11,7 +11,7 @@ use crate::params::Params;
 use crate::state::{Importer, steps};
 
 /// zrak's spheres have their texture about y, from -x towards z; pbrt's about z, from x towards y.
-const SPHERE_TURN: [[f64; 4]; 3] =
+pub(crate) const SPHERE_TURN: [[f64; 4]; 3] =
     [[-1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0]];
 
 impl Importer {

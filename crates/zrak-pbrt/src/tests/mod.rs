@@ -1,8 +1,11 @@
 //! Whole files, good and bad.
 
-use std::path::{Path, PathBuf};
+mod bad_input;
+mod pictures;
+mod round_trip;
 
-use proptest::prelude::*;
+use std::path::PathBuf;
+
 use zrak_scene::desc::{
     BackgroundDesc, ColorDesc, ConductorDesc, CurveForm, LightDesc, LightSides, MaterialDesc,
     MeshDesc, ObjectDesc, ProjectionDesc, ScalarDesc, TextureDesc,
@@ -365,65 +368,6 @@ fn parts_of_spheres_and_patches_are_read_as_they_are() {
 }
 
 #[test]
-fn what_is_wrong_is_shown_at_its_place() {
-    let at = |world: &str| format!("{HEAD}{world}");
-    for (text, words) in [
-        ("WorldBegun".to_owned(), "did you mean `WorldBegin`?"),
-        (at("Shape \"sphere\" \"flaot radius\" 1"), "did you mean `float`?"),
-        (at("Shape \"sphere\" \"float radius\" [1"), "the bracket is not closed"),
-        (at("Shape \"sphere\" \"float radius\" \"one\""), "a number must stand here"),
-        (at("Shape \"sphere\" \"float radius\" -1"), "`radius` must be more than 0"),
-        (at("Shape \"spheer\""), "unknown shape \"spheer\""),
-        (at("Shape \"sphere"), "the string has no end"),
-        (at("Material \"difuse\""), "did you mean \"diffuse\"?"),
-        (at("NamedMaterial \"gold\""), "there is no material \"gold\""),
-        (at("Texture \"a\" \"spectrum\" \"imagemap\""), "needs a \"string filename\""),
-        (at("Material \"diffuse\" \"texture reflectance\" \"a\""), "no spectrum texture \"a\""),
-        (at("AttributeEnd"), "there is no AttributeBegin before this"),
-        (at("AttributeBegin"), "AttributeBegin has no end"),
-        (at("AttributeBegin TransformEnd"), "AttributeBegin is closed by TransformEnd"),
-        (at("ObjectBegin \"a\""), "ObjectBegin"),
-        (at("ObjectInstance \"a\""), "there is no object \"a\""),
-        (at("MediumInterface \"fog\" \"\""), "there is no medium \"fog\""),
-        (at("LightSource \"lamp\""), "unknown light \"lamp\""),
-        (at("Scale 1 0 1"), "flattens space"),
-        (at("Rotate 10 0 0 0"), "no direction"),
-        (at("Translate 1 2"), "but the file ends"),
-        (at("Translate 1 2 x"), "a number must stand here"),
-        (
-            at(
-                "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 3]",
-            ),
-            "corner beyond",
-        ),
-        (
-            at(
-                "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 -2]",
-            ),
-            "no index",
-        ),
-        (at("Shape \"trianglemesh\" \"point3 P\" [0 0 1e39 1 0 0 0 1 0]"), "not finite"),
-        (at("Shape \"plymesh\" \"string filename\" \"none.ply\""), "cannot read"),
-        (at("Shape \"plymesh\" \"string filename\" \"../a.ply\""), "outside of the scene's folder"),
-        (at("Include \"/etc/passwd\""), "outside of the scene's folder"),
-        (at("Include \"scene.pbrt\""), "includes itself"),
-        (at("]"), "a directive must stand here"),
-        (at("ColorSpace \"adobe\""), "unknown colour space"),
-        (at("Transform [1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1]"), "not affine"),
-        (
-            at("Material \"conductor\" \"spectrum eta\" [400 1 300 2] \"spectrum k\" [400 1]"),
-            "must increase",
-        ),
-        ("Shape \"sphere\"".to_owned(), "must come after WorldBegin"),
-        ("Camera \"perspective\"".to_owned(), "no WorldBegin"),
-        ("WorldBegin".to_owned(), "no Camera"),
-        ("Camera \"fisheye\"\nWorldBegin".to_owned(), "unknown camera"),
-    ] {
-        refused(&text, words);
-    }
-}
-
-#[test]
 fn what_has_no_effect_is_warned_about() {
     let imported =
         read("Shape \"sphere\" \"float raduis\" 3\nMaterial \"hair\"\nShape \"sphere\"\n");
@@ -431,50 +375,4 @@ fn what_has_no_effect_is_warned_about() {
     assert_eq!(shown.len(), 2, "{shown:?}");
     assert!(shown[0].contains("scene.pbrt:5: parameter \"raduis\" is not used here"), "{shown:?}");
     assert!(shown[1].contains(":6: material \"hair\" is rendered as"), "{shown:?}");
-}
-
-#[test]
-fn limits_hold() {
-    let folder = Folder::new(&[("scene.pbrt", &format!("{HEAD}{}", "# much\n".repeat(10_000)))]);
-    let options = ImportOptions { max_bytes: 10_000, ..ImportOptions::default() };
-    let error = import(&folder.path("scene.pbrt"), &options).unwrap_err().to_string();
-    assert!(error.contains("larger than the limit"), "{error}");
-    let error = import(Path::new("none.pbrt"), &ImportOptions::default()).unwrap_err().to_string();
-    assert!(error.contains("there is no such scene file"), "{error}");
-}
-
-#[test]
-fn a_link_out_of_the_folder_is_refused() {
-    #[cfg(unix)]
-    {
-        let elsewhere = Folder::new(&[("a.pbrt", "# nothing")]);
-        let scene = format!("{HEAD}Include \"a.pbrt\"\n");
-        let folder = Folder::new(&[("scene.pbrt", &scene)]);
-        std::os::unix::fs::symlink(elsewhere.path("a.pbrt"), folder.path("a.pbrt")).unwrap();
-        let path = folder.path("scene.pbrt");
-        let error = import(&path, &ImportOptions::default()).unwrap_err().to_string();
-        assert!(error.contains("outside of the scene's folder"), "{error}");
-        let options = ImportOptions { allow_external: true, ..ImportOptions::default() };
-        assert!(import(&path, &options).is_ok());
-    }
-}
-
-proptest! {
-    /// Whatever is in a file, reading it ends, without a panic.
-    #[test]
-    fn damaged_files_do_no_harm(at in any::<prop::sample::Index>(), cut in 0_usize..40, junk in "[ -~\n]{0,12}") {
-        let text = format!(
-            "{HEAD}Texture \"t\" \"float\" \"fbm\" \"integer octaves\" 3\nAttributeBegin\nRotate 3 1 2 3\n\
-             Material \"conductor\" \"texture roughness\" \"t\" \"spectrum eta\" [400 1 500 2]\n\
-             {TRIANGLE}AreaLightSource \"diffuse\" \"blackbody L\" 3000\nShape \"loopsubdiv\" \
-             \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2] \"integer levels\" 1\nAttributeEnd\n"
-        );
-        let at = at.index(text.len());
-        let end = (at + cut).min(text.len());
-        let damaged = format!("{}{junk}{}", &text[..at], &text[end..]);
-        let folder = Folder::new(&[("scene.pbrt", &damaged)]);
-        if let Ok(imported) = import(&folder.path("scene.pbrt"), &ImportOptions::default()) {
-            let _ = validate(&imported.desc);
-        }
-    }
 }
