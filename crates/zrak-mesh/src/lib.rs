@@ -14,7 +14,7 @@ pub mod ply;
 mod subdivide;
 mod triangulate;
 
-pub use bytes::{Limits, read_file};
+pub use bytes::{Limits, read_file, unpack};
 pub use error::Error;
 pub use mesh::TriangleMesh;
 pub use subdivide::loop_subdivide;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use zrak_mesh::{TriangleMesh, loop_subdivide, ply};
+use zrak_mesh::TriangleMesh;
 use zrak_scene::desc::{
     ColorDesc, LightSides, MaterialDesc, MediumInterfaceDesc, MeshDesc, ObjectDesc, ScalarDesc,
     TransformStep,
@@ -97,7 +97,9 @@ impl Importer {
                 let levels = params.integer("levels")?.unwrap_or(3).clamp(0, 64) as u32;
                 params.ignore(&["scheme"]);
                 let control = triangle_mesh(at, params)?;
-                let mesh = loop_subdivide(&control.positions, &control.triangles, levels)
+                let mesh = self
+                    .sources
+                    .subdivided(&control, levels)
                     .map_err(|error| Fault::new(at, error.to_string()))?;
                 self.mesh(mesh, material, flip, at)?
             }
@@ -108,12 +110,11 @@ impl Importer {
                 let name = name.to_owned();
                 let path = self.sources.resolve(&name, at)?;
                 params.ignore(&["displacement", "displacement.edgelength"]);
-                let mesh = ply::read(&path, &self.sources.limits())
-                    .map_err(|error| Fault::new(at, error.to_string()))?;
+                let mesh = self.sources.mesh(&path, at)?;
                 self.mesh(mesh, material, flip, at)?
             }
             "bilinearmesh" => {
-                let mesh = bilinear_mesh(at, params)?;
+                let mesh = bilinear_mesh(at, params, self.sources.limits().max_bytes)?;
                 self.mesh(mesh, material, flip, at)?
             }
             "curve" => {
@@ -162,6 +163,7 @@ impl Importer {
         at: &Span,
     ) -> Result<ObjectDesc> {
         mesh.validate().map_err(|error| Fault::new(at, error.to_string()))?;
+        self.sources.spend(mesh.n_bytes() as u64, at)?;
         let name = self.fresh("mesh");
         self.desc.meshes.insert(name.clone(), MeshDesc::Loaded(Arc::new(mesh)));
         Ok(ObjectDesc::Mesh {
@@ -256,7 +258,7 @@ fn triangle_mesh(at: &Span, params: &Params) -> Result<TriangleMesh> {
 }
 
 /// Bilinear patches as triangles: two for a flat one, a grid for one that is bent.
-fn bilinear_mesh(at: &Span, params: &Params) -> Result<TriangleMesh> {
+fn bilinear_mesh(at: &Span, params: &Params, max_bytes: u64) -> Result<TriangleMesh> {
     let Some(points) = params.triples("P")? else {
         return Err(Fault::new(at, "the mesh needs vertices: \"point3 P\""));
     };
@@ -278,6 +280,14 @@ fn bilinear_mesh(at: &Span, params: &Params) -> Result<TriangleMesh> {
         let message =
             "patches need four indices of vertices each, and one uv and N for each vertex";
         return Err(Fault::new(at, message));
+    }
+    // What a bent patch takes: vertices with normals and uv, and triangles.
+    let n_steps = u64::from(PATCH_STEPS);
+    let patch_bytes = (n_steps + 1) * (n_steps + 1) * 32 + n_steps * n_steps * 24;
+    let n_patches = indices.len() as u64 / 4;
+    if n_patches > max_bytes / patch_bytes {
+        let message = format!("{n_patches} patches take more than the limit of {max_bytes} bytes");
+        return Err(Fault::new(at, message).help("raise the limit if they are meant"));
     }
     let mut mesh = TriangleMesh::default();
     for patch in indices.chunks_exact(4) {

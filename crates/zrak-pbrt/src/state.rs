@@ -14,7 +14,7 @@ use crate::color::{ColorSpace, SPACES};
 use crate::error::{Fault, Result, Span};
 use crate::lexer::{self, Kind};
 use crate::params::{KINDS, Param, Params, Values};
-use crate::source::Sources;
+use crate::source::{Sources, Store};
 use crate::{ImportOptions, Imported, Warning};
 
 /// How deep attributes may be nested.
@@ -86,11 +86,12 @@ pub(crate) struct Importer {
 impl Importer {
     pub(crate) fn new(
         path: &Path,
+        store: Store,
         options: ImportOptions,
     ) -> std::result::Result<Self, SceneError> {
         let base = path.parent().unwrap_or(Path::new(""));
         let mut importer = Self {
-            sources: Sources::new(base, options),
+            sources: Sources::new(base, store, options),
             desc: SceneDesc {
                 name: path
                     .file_stem()
@@ -126,7 +127,7 @@ impl Importer {
         let grey = MaterialDesc::Lambertian { color: [0.5; 3].into() };
         importer.desc.materials.insert("default".to_owned(), grey);
         let origin = path.display().to_string();
-        if !path.is_file() {
+        if !importer.sources.is_file(path) {
             let message = "there is no such scene file".to_owned();
             let help = Some("check the path; relative paths start at the current folder");
             return Err(SceneError::file(SceneErrorKind::Io, &origin, message, help));

@@ -1,0 +1,31 @@
+//! Whatever passes validation can be lowered and rendered, and no tree changes the picture.
+
+#![no_main]
+
+use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
+use zrak_fuzz::{init, lower_small, mutate_scene, render_and_compare, repair, show};
+
+fuzz_target!(init: init(), |bytes: &[u8]| {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let Ok(scene) = toml::from_str(text) else { return };
+    let Some(desc) = repair(&scene) else {
+        return show(|| "it is not a scene, and cannot be made one".to_owned());
+    };
+    show(|| zrak_scene::file::write_string(&desc));
+    // What is found when it is lowered: meshes that are not there, prototypes of prototypes without end.
+    let arena = match lower_small(&desc) {
+        Ok(arena) => arena,
+        Err(problems) => return show(|| format!("{problems:?}")),
+    };
+    render_and_compare(&arena);
+});
+
+fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| {
+    match mutate_scene(&data[..size], max_size, seed) {
+        Some(text) => {
+            data[..text.len()].copy_from_slice(text.as_bytes());
+            text.len()
+        }
+        None => fuzzer_mutate(data, size, max_size),
+    }
+});

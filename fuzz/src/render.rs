@@ -1,0 +1,106 @@
+//! A few samples of a scene, by every tree.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use zrak_core::accel::{Accel, BruteForce, Bvh2, Bvh8};
+use zrak_core::accessor::Array;
+use zrak_core::film::PixelSum;
+use zrak_core::integrators::render_pixel;
+use zrak_core::interaction::Hit;
+use zrak_core::ray::Ray;
+use zrak_core::sampler::Sampler;
+use zrak_core::scene::{PrimRef, SceneView};
+use zrak_scene::arena::SceneArena;
+use zrak_scene::desc::SceneDesc;
+use zrak_scene::lower::{LowerOptions, MissingTextures, lower_with_warnings};
+use zrak_scene::validate::Problem;
+
+/// Pixels to a side.
+const SIDE: u32 = 4;
+/// Samples of each pixel.
+const SAMPLES: u32 = 2;
+/// Most path segments: the time that a long path takes is not what is looked for.
+const DEPTH_MAX: u32 = 12;
+/// Most primitives that brute force is tried with.
+const BRUTE_MAX: usize = 64;
+
+/// Lowers a scene, with a small picture and short paths. It finds the files `embedded:small.pfm` and
+/// `embedded:small.png` and no others.
+pub fn lower_small(desc: &SceneDesc) -> Result<SceneArena, Vec<Problem>> {
+    let mut desc = desc.clone();
+    desc.camera.width = SIDE;
+    desc.camera.height = SIDE;
+    desc.render.max_depth = desc.render.max_depth.min(DEPTH_MAX);
+    let mut options = LowerOptions::new("/no/such/folder");
+    options.missing_textures = MissingTextures::Warn;
+    options.image_limits.max_bytes = 4 << 20;
+    options.embedded = Arc::new(BTreeMap::from([
+        ("small.pfm".to_owned(), include_bytes!("../seeds/image/small.pfm").to_vec()),
+        ("small.png".to_owned(), include_bytes!("../seeds/image/rgba8.png").to_vec()),
+    ]));
+    lower_with_warnings(&desc, &options).map(|(arena, _)| arena)
+}
+
+/// Renders the samples with both trees and, if there is little in the scene, without one.
+///
+/// # Panics
+/// If the pictures are not the same.
+pub fn render_and_compare(arena: &SceneArena) {
+    let view = arena.view();
+    let wide = picture(&view, Tree::Wide(Bvh8 { nodes: view.nodes8 }));
+    let binary = picture(&view, Tree::Binary(Bvh2 { nodes: view.nodes2 }));
+    assert_eq!(wide, binary, "the trees disagree");
+    let prims = world(&view);
+    if prims.len() <= BRUTE_MAX {
+        let brute = picture(&view, Tree::None(BruteForce { prims: Array::new(&prims) }));
+        assert_eq!(wide, brute, "the tree hides or adds a hit");
+    }
+}
+
+fn picture(view: &SceneView, tree: Tree) -> Vec<PixelSum> {
+    let pixels = (0..SIDE * SIDE).map(|i| (i % SIDE, i / SIDE));
+    pixels.map(|(x, y)| render_pixel(view, tree, x, y, 0, SAMPLES)).collect()
+}
+
+/// The primitives of the world, instances among them.
+fn world(view: &SceneView) -> Vec<PrimRef> {
+    let (mut prims, mut stack) = (Vec::new(), vec![0]);
+    while let Some(node) = stack.pop()
+        && prims.len() <= BRUTE_MAX
+    {
+        for child in view.nodes2.get(node).children {
+            if child.is_node() {
+                stack.push(child.index());
+            } else if child != PrimRef::NONE {
+                prims.push(child);
+            }
+        }
+    }
+    prims
+}
+
+/// A tree that is chosen at run time, so that the integrator is compiled once.
+#[derive(Clone, Copy)]
+enum Tree<'a> {
+    Wide(Bvh8<'a>),
+    Binary(Bvh2<'a>),
+    None(BruteForce<'a>),
+}
+
+impl Accel for Tree<'_> {
+    #[inline(never)]
+    fn closest_hit(
+        &self,
+        scene: &SceneView,
+        ray: &Ray,
+        sampler: &Sampler,
+        t_max: f32,
+    ) -> Option<Hit> {
+        match self {
+            Self::Wide(tree) => tree.closest_hit(scene, ray, sampler, t_max),
+            Self::Binary(tree) => tree.closest_hit(scene, ray, sampler, t_max),
+            Self::None(list) => list.closest_hit(scene, ray, sampler, t_max),
+        }
+    }
+}
