@@ -11,7 +11,9 @@ cd "$(dirname "$0")"
 scenes=${1:-}
 max_seed=50000
 
-cargo +nightly fuzz build
+# libFuzzer is C++: with its library inside, the binaries need only glibc.
+libstdcxx=$(dirname "$(g++ -print-file-name=libstdc++.a)")
+CXXSTDLIB=static=stdc++ RUSTFLAGS="-L native=$libstdcxx" cargo +nightly fuzz build
 
 out=out/fuzz
 rm -rf out/fuzz out/fuzz.tar.xz
@@ -33,6 +35,10 @@ for target in scene render; do
         awk -v to="$out/seeds/$target/$(basename "$page" .md)" \
             '/^```toml$/ { n++; file = to "-" n ".toml"; next } /^```/ { file = "" } file { print > file }' "$page"
     done
+    # Parts of scenes become scenes.
+    for file in "$out/seeds/$target"/*.toml; do
+        grep -q camera "$file" || sed -i "1i format = 1\nname = 'part'\ncamera = { look_from = [0, 0, 9], look_at = [0, 0, 0], vfov_deg = 40, width = 4, height = 4 }" "$file"
+    done
 done
 cp ../assets/gradient.pfm "$out/seeds/image/"
 
@@ -44,7 +50,7 @@ add_file_set() {
     chmod u+w "$set"
     # Twice, as included files name others.
     for _ in 1 2; do
-        grep -ao '"[^"]*\.\(pbrt\|ply\|spd\|gz\)"' "$set" | tr -d '"' | sort -u | while read -r name; do
+        { grep -ao '"[^"]*\.\(pbrt\|ply\|spd\|gz\)"' "$set" || true; } | tr -d '"' | sort -u | while read -r name; do
             if [ -f "$folder/$name" ] && [ "$name" != "$main" ] && ! grep -aq "^#file $name\$" "$set"; then
                 # Files that are too large, by their first lines.
                 { printf '\n#file %s\n' "$name"; head -c $((max_seed / 4)) "$folder/$name"; } >>"$set"

@@ -7,7 +7,9 @@ use zrak_fuzz::{init, lower_small, mutate_scene, render_and_compare, repair, sho
 
 fuzz_target!(init: init(), |bytes: &[u8]| {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
-    let Ok(scene) = toml::from_str(text) else { return };
+    // The picture of the earth takes longer to decode than the rest of a small scene to render.
+    let text = text.replace("builtin:earth.png", "embedded:small.png");
+    let Ok(scene) = toml::from_str(&text) else { return };
     let Some(desc) = repair(&scene) else {
         return show(|| "it is not a scene, and cannot be made one".to_owned());
     };
