@@ -15,13 +15,12 @@ out=$(realpath "$out")
 cores=${CORES:-$(nproc)}
 targets=${TARGETS:-$(ls "$folder/bin")}
 
-export RUST_BACKTRACE=0 ASAN_OPTIONS=detect_leaks=0:allocator_release_to_os_interval_ms=1000
+export RUST_BACKTRACE=0
 
 # Most bytes of an input.
 max_len() {
     case $1 in
-        ply | image | zscene) echo 4096 ;;
-        render) echo 12000 ;;
+        ply | image | obj | scene | render) echo 4096 ;;
         *) echo 16384 ;;
     esac
 }

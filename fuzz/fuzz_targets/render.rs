@@ -1,9 +1,12 @@
 //! Whatever passes validation can be lowered and rendered, and no tree changes the picture.
+//!
+//! With a folder in the variable `ZRAK_FUZZ_COMPILE`, scenes are compiled into it: seeds for `zscene`.
 
 #![no_main]
 
 use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
 use zrak_fuzz::{init, lower_small, mutate_scene, render_and_compare, repair, show};
+use zrak_scene::compiled::CompiledScene;
 
 fuzz_target!(init: init(), |bytes: &[u8]| {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
@@ -20,6 +23,10 @@ fuzz_target!(init: init(), |bytes: &[u8]| {
         Err(problems) => return show(|| format!("{problems:?}")),
     };
     render_and_compare(&arena);
+    if let Some(folder) = std::env::var_os("ZRAK_FUZZ_COMPILE") {
+        let path = std::path::Path::new(&folder).join(format!("{}.zscene", desc.name));
+        CompiledScene::new(&desc, arena).write_file(path).expect("the folder can be written to");
+    }
 });
 
 fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| {

@@ -7,7 +7,7 @@ mod repair;
 
 pub use files::file_set;
 pub use mutate::mutate_scene;
-pub use render::{lower_small, render_and_compare};
+pub use render::{lower_small, render, render_and_compare};
 pub use repair::repair;
 
 /// Makes a target repeatable: everything that is parallel runs on the thread that asks for it.

@@ -7,7 +7,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use zrak::{BackendChoice, RenderOptions, Tree};
 
 use crate::{
-    bench, compare, completions, devices, exit_codes, export, man, render, scenes, selftest,
+    bench, compare, compile, completions, convert, devices, exit_codes, info, man, render, scenes,
+    selftest,
 };
 
 /// A physically based path tracer: the same picture, to the last bit, on processor and GPU
@@ -30,8 +31,9 @@ const EXAMPLES: &str = "\
 Examples:
   zrak scenes                           what there is to render
   zrak render final                     to final.png
-  zrak render my-scene.toml -o a.exr    a scene file to an OpenEXR picture
-  zrak export cover -o cover.toml       a scene file to start from
+  zrak render model.glb -o a.exr        a glTF file to an OpenEXR picture
+  zrak convert cover -o cover.toml      a scene file to start from
+  zrak info scene.pbrt                  what is in a scene, and the memory it takes
   zrak selftest                         is every picture the same everywhere?";
 
 /// The subcommands.
@@ -42,9 +44,15 @@ pub(crate) enum Command {
     Render(render::RenderArgs),
     /// List the built-in scenes
     Scenes(scenes::ScenesArgs),
-    /// Write a scene as a scene file
-    #[command(after_help = export::EXAMPLES)]
-    Export(export::ExportArgs),
+    /// Write a scene as a file that renders at once
+    #[command(after_help = compile::EXAMPLES)]
+    Compile(compile::CompileArgs),
+    /// Write a scene as a file of another format
+    #[command(visible_alias = "export", after_help = convert::EXAMPLES)]
+    Convert(convert::ConvertArgs),
+    /// Say what is in a scene, and the memory that it takes
+    #[command(after_help = info::EXAMPLES)]
+    Info(info::InfoArgs),
     /// List what can be rendered on
     Devices(devices::DevicesArgs),
     /// Say how two pictures differ
@@ -64,43 +72,6 @@ pub(crate) enum Command {
     Man(man::ManArgs),
 }
 
-/// What of a scene may be read.
-#[derive(Args, Clone, Copy, Debug)]
-#[command(next_help_heading = "Scene")]
-pub(crate) struct LoadArgs {
-    /// Read files outside of the scene's folder, too (pbrt files)
-    #[arg(long)]
-    pub(crate) allow_external: bool,
-    /// Most bytes of a scene's files together, unpacked (pbrt files)
-    #[arg(long, value_name = "N", default_value_t = zrak::LoadOptions::default().max_bytes)]
-    pub(crate) max_bytes: u64,
-}
-
-impl LoadArgs {
-    /// Loads a scene; says what was not read as it stands, unless nobody wants to know.
-    pub(crate) fn load(
-        &self,
-        scene: &std::path::Path,
-        quiet: bool,
-    ) -> Result<zrak::Scene, zrak::Error> {
-        let Self { allow_external, max_bytes } = *self;
-        let scene = zrak::load_scene_with(scene, &zrak::LoadOptions { allow_external, max_bytes })?;
-        if !quiet {
-            for warning in scene.warnings.iter().take(WARNINGS_MAX) {
-                crate::terminal::note(&format!("warning: {warning}"));
-            }
-            if scene.warnings.len() > WARNINGS_MAX {
-                let n_more = scene.warnings.len() - WARNINGS_MAX;
-                crate::terminal::note(&format!("warning: and {n_more} more of the kind"));
-            }
-        }
-        Ok(scene)
-    }
-}
-
-/// More warnings than this are counted, not shown.
-const WARNINGS_MAX: usize = 20;
-
 /// What to render on.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Backend (never changes the picture)")]
@@ -111,9 +82,9 @@ pub(crate) struct BackendArgs {
     /// Threads of the processor [default: all cores]
     #[arg(long, short = 'j', value_name = "N", value_parser = parse_threads)]
     pub(crate) threads: Option<usize>,
-    /// Number of the CUDA device (see `zrak devices`)
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub(crate) device: u32,
+    /// Numbers of the CUDA devices with commas between them, or `all` (see `zrak devices`)
+    #[arg(long, value_name = "N", default_value_t = zrak::Devices::one(0))]
+    pub(crate) device: zrak::Devices,
     /// Threads of a CUDA block along x and y
     #[arg(long, value_name = "WxH", default_value_t = Block::default())]
     pub(crate) block: Block,
@@ -129,7 +100,7 @@ impl BackendArgs {
             backend: self.backend.into(),
             threads: self.threads,
             tree: self.tree.into(),
-            device: self.device,
+            devices: self.device,
             block: self.block.0,
         }
     }
@@ -142,8 +113,10 @@ pub(crate) enum BackendName {
     Auto,
     /// The processor
     Cpu,
-    /// An NVIDIA GPU, or an error
+    /// NVIDIA GPUs, or an error
     Cuda,
+    /// NVIDIA GPUs and the processor together, or an error
+    Hybrid,
 }
 
 impl From<BackendName> for BackendChoice {
@@ -152,6 +125,7 @@ impl From<BackendName> for BackendChoice {
             BackendName::Auto => Self::Auto,
             BackendName::Cpu => Self::Cpu,
             BackendName::Cuda => Self::Cuda,
+            BackendName::Hybrid => Self::Hybrid,
         }
     }
 }

@@ -6,15 +6,19 @@ mod failure;
 
 mod bench;
 mod compare;
+mod compile;
 mod completions;
+mod convert;
 mod devices;
-mod export;
+mod info;
 mod man;
 mod render;
 mod scenes;
 mod selftest;
 
 mod interrupt;
+mod load;
+mod loading;
 mod machine;
 mod overrides;
 mod progress;
@@ -33,7 +37,9 @@ fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Render(args) => render::run(&args, start),
         Command::Scenes(args) => scenes::run(&args),
-        Command::Export(args) => export::run(&args),
+        Command::Compile(args) => compile::run(&args, start),
+        Command::Convert(args) => convert::run(&args),
+        Command::Info(args) => info::run(&args),
         Command::Devices(args) => devices::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Selftest(args) => selftest::run(&args),

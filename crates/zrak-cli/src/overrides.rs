@@ -23,6 +23,9 @@ pub(crate) struct Overrides {
     /// Greatest number of ray segments of a path
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) max_depth: Option<u32>,
+    /// Ray segments after which paths that carry little may end by chance; 65535 for never
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) rr_depth: Option<u32>,
     /// Seed of every random number, in decimal or as 0x...
     #[arg(long, value_name = "N", value_parser = parse_seed, allow_negative_numbers = true)]
     pub(crate) seed: Option<u64>,
@@ -57,6 +60,7 @@ impl Overrides {
         let render = &mut desc.render;
         render.samples_per_pixel = self.spp.unwrap_or(render.samples_per_pixel);
         render.max_depth = self.max_depth.unwrap_or(render.max_depth);
+        render.rr_depth = self.rr_depth.unwrap_or(render.rr_depth);
         render.seed = self.seed.unwrap_or(render.seed);
 
         let lines: Vec<String> =
@@ -79,6 +83,7 @@ impl Overrides {
             ("height", ..) => "--height'",
             ("samples_per_pixel", ..) => "--spp'",
             ("max_depth", ..) => "--max-depth'",
+            ("rr_depth", ..) => "--rr-depth'",
             _ => return problem.to_string(),
         };
         let message = problem.message.replace(&format!("`{key}` must"), &format!("{key} must"));

@@ -199,9 +199,18 @@ fn variants(args: &SelftestArgs, has_cuda: bool) -> Vec<Variant> {
         let n_blocks = if args.quick { 2 } else { BLOCKS.len() };
         for block @ [x, y] in BLOCKS.into_iter().take(n_blocks) {
             let (backend, device) = (BackendChoice::Cuda, args.device);
-            let options = RenderOptions { backend, device, block, ..RenderOptions::default() };
+            let devices = zrak::Devices::one(device);
+            let options = RenderOptions { backend, devices, block, ..RenderOptions::default() };
             let replay = format!("--backend cuda --device {device} --block {x}x{y}");
             variants.push(Variant { column: "cuda", replay, options });
+        }
+        for (column, backend) in
+            [("cuda, all", BackendChoice::Cuda), ("hybrid", BackendChoice::Hybrid)]
+        {
+            let devices = zrak::Devices::ALL;
+            let options = RenderOptions { backend, devices, ..RenderOptions::default() };
+            let replay = format!("--backend {backend} --device all");
+            variants.push(Variant { column, replay, options });
         }
     }
     variants

@@ -27,6 +27,30 @@ pub(crate) fn number(value: f64) -> String {
     }
 }
 
+/// Bytes with three digits that matter, in binary units.
+pub(crate) fn bytes(n: u64) -> String {
+    let units = ["B", "KiB", "MiB", "GiB", "TiB"];
+    let (mut value, mut unit) = (n as f64, 0);
+    while value >= 1024.0 && unit + 1 < units.len() {
+        value /= 1024.0;
+        unit += 1;
+    }
+    if unit == 0 { format!("{n} B") } else { format!("{} {}", number(value), units[unit]) }
+}
+
+/// A whole number with its digits in groups of three.
+pub(crate) fn grouped(n: u64) -> String {
+    let digits = n.to_string();
+    let mut out = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(digit);
+    }
+    out
+}
+
 /// `1 thread`, `2 threads`.
 pub(crate) fn count(n: usize, noun: &str) -> String {
     if n == 1 { format!("1 {noun}") } else { format!("{n} {noun}s") }
@@ -83,6 +107,18 @@ mod tests {
             (7290.0, "2 h 01 min"),
         ] {
             assert_eq!(duration(seconds), text);
+        }
+    }
+
+    #[test]
+    fn sizes_and_counts_read_well() {
+        for (n, expected) in
+            [(0, "0 B"), (1023, "1023 B"), (1536, "1.50 KiB"), (25 << 30, "25.0 GiB")]
+        {
+            assert_eq!(bytes(n), expected);
+        }
+        for (n, expected) in [(7, "7"), (999, "999"), (1000, "1,000"), (12_345_678, "12,345,678")] {
+            assert_eq!(grouped(n), expected);
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! There is no generator whose state must be kept, so a sample is the same whoever computes it, and
 //! whenever. A dimension is a number that belongs to one decision of the path: the decisions at the
-//! camera have the dimensions of [`CameraDim`], those at bounce b the dimensions 8 (b + 1) + i.
+//! camera have the dimensions of [`CameraDim`], those at bounce b the dimensions 16 (b + 1) + i.
 //! Free flights are drawn during traversal, in an order that depends on the tree, so their
 //! dimension is made of the bounce and the medium's index instead.
 
@@ -44,10 +44,12 @@ pub enum BounceDim {
     Flight,
     /// Which channel the flight is drawn for.
     Channel,
+    /// Whether a path that carries little goes on.
+    Roulette,
 }
 
 /// Number of dimensions that a bounce may use.
-const DIMS_PER_BOUNCE: u32 = 8;
+const DIMS_PER_BOUNCE: u32 = 16;
 /// Dimensions from here on belong to free flights.
 const FREE_FLIGHT_DIMS: u32 = 1 << 31;
 

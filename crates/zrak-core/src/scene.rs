@@ -49,6 +49,14 @@ macro_rules! for_each_scene_array {
             disks: $crate::shapes::Disk,
             /// Cylinders.
             cylinders: $crate::shapes::Cylinder,
+            /// Parts of spheres.
+            partial_spheres: $crate::shapes::PartialSphere,
+            /// Bilinear patches of meshes.
+            mesh_patches: $crate::shapes::MeshPatch,
+            /// Parts of curves.
+            curves: $crate::shapes::Curve,
+            /// Normals of curves that are ribbons.
+            ribbons: $crate::shapes::Ribbon,
             /// Trees under affine maps.
             instances: $crate::shapes::Instance,
             /// How instances move.
@@ -236,6 +244,9 @@ impl SceneView<'_> {
             (self.mesh_triangles.is_empty(), PrimKind::MeshTriangle),
             (self.disks.is_empty(), PrimKind::Disk),
             (self.cylinders.is_empty(), PrimKind::Cylinder),
+            (self.partial_spheres.is_empty(), PrimKind::PartialSphere),
+            (self.mesh_patches.is_empty(), PrimKind::MeshPatch),
+            (self.curves.is_empty(), PrimKind::Curve),
             (self.instances.is_empty(), PrimKind::Instance),
             (self.media.is_empty(), PrimKind::Medium),
         ];
@@ -338,8 +349,10 @@ pub struct Globals {
     pub seed_hi: u32,
     /// Index of the medium that the camera is in, or [`crate::media::VACUUM`].
     pub camera_medium: u32,
+    /// Number of ray segments after which a path that carries little may be ended by chance.
+    pub rr_depth: u32,
     /// Nothing.
-    pub _pad: [u32; 2],
+    pub _pad: u32,
 }
 
 const _: () = assert!(size_of::<Globals>().is_multiple_of(16));
@@ -450,6 +463,12 @@ tagged_handle! {
         Disk = 9,
         /// [`crate::shapes::Cylinder`].
         Cylinder = 10,
+        /// [`crate::shapes::PartialSphere`].
+        PartialSphere = 11,
+        /// [`crate::shapes::MeshPatch`].
+        MeshPatch = 12,
+        /// [`crate::shapes::Curve`].
+        Curve = 13,
     }
 }
 

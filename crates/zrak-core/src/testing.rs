@@ -294,7 +294,8 @@ pub(crate) fn globals() -> Globals {
         seed_lo: 0,
         seed_hi: 0,
         camera_medium: crate::media::VACUUM,
-        _pad: [0; 2],
+        rr_depth: u32::MAX,
+        _pad: 0,
     }
 }
 

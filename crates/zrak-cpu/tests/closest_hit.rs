@@ -13,7 +13,7 @@ use zrak_core::sampler::Sampler;
 use zrak_core::scene::{PrimKind, PrimRef, SceneView};
 use zrak_core::shapes::surface_interaction;
 use zrak_scene::arena::SceneArena;
-use zrak_scene::desc::{MeshDesc, ObjectDesc, ScaleDesc, TransformStep, Triple};
+use zrak_scene::desc::{CurveForm, MeshDesc, ObjectDesc, ScaleDesc, TransformStep, Triple};
 
 /// Random numbers.
 struct Rng(u32);
@@ -73,7 +73,7 @@ fn random_object(rng: &mut Rng, size: f64) -> ObjectDesc {
         }
     };
     let m = || "m".to_owned();
-    let object = match rng.below(11) {
+    let object = match rng.below(14) {
         0 => scenes::sphere(c, r, "m"),
         1 => scenes::moving_sphere(c, rng.point(size), r, "m"),
         2 => {
@@ -123,7 +123,40 @@ fn random_object(rng: &mut Rng, size: f64) -> ObjectDesc {
             });
             ObjectDesc::Instance { prototype: "pair".to_owned(), transform, transform_end }
         }
-        9 => scenes::medium(scenes::in_sphere(c, r), 1.0 / r, "mist"),
+        9 => {
+            let mesh = "patches".to_owned();
+            let scale = TransformStep::Scale(ScaleDesc::Uniform(r));
+            let transform = vec![scale, TransformStep::Translate(c)];
+            let flip = rng.below(2) == 0;
+            ObjectDesc::Mesh { mesh, material: m(), group_materials: Vec::new(), flip, transform }
+        }
+        10 => {
+            let form =
+                [CurveForm::Flat, CurveForm::Cylinder, CurveForm::Ribbon][rng.below(3) as usize];
+            let n_segments = 1 + rng.below(2) as usize;
+            let points = (0..3 * n_segments + 1)
+                .map(|_| {
+                    let p = rng.point(3.0 * r);
+                    [c[0] + p[0], c[1] + p[1], c[2] + p[2]]
+                })
+                .collect();
+            let n_normals = if form == CurveForm::Ribbon { n_segments + 1 } else { 0 };
+            let normals = (0..n_normals).map(|_| edge(rng)).collect();
+            let widths = [r, rng.range(0.0, 0.5) * r];
+            let (material, transform) = (m(), Vec::new());
+            ObjectDesc::Curve { points, widths, form, normals, material, transform }
+        }
+        11 => ObjectDesc::Sphere {
+            center: c,
+            center_end: (rng.below(3) == 0).then(|| rng.point(size)),
+            radius: r,
+            z_min: (rng.below(2) == 0).then_some(-0.3 * r),
+            z_max: Some(0.6 * r),
+            phi_max_deg: (rng.below(2) == 0).then_some(250.0),
+            material: m(),
+            transform: Vec::new(),
+        },
+        12 => scenes::medium(scenes::in_sphere(c, r), 1.0 / r, "mist"),
         _ => scenes::medium(scenes::in_box(c, corner(r)), 3.0 / r, "mist"),
     };
     match rng.below(4) {
@@ -144,6 +177,7 @@ fn random_scene(rng: &mut Rng, n: u32, size: f64) -> Option<std::sync::Arc<Scene
     desc.materials.insert("m".to_owned(), scenes::lambertian(0.5));
     desc.materials.insert("mist".to_owned(), scenes::isotropic(0.5));
     let (tetrahedron, grid) = meshes();
+    desc.meshes.insert("patches".to_owned(), patches());
     desc.meshes.insert("tetrahedron".to_owned(), tetrahedron);
     desc.meshes.insert("grid".to_owned(), grid);
     desc.prototypes.insert(
@@ -195,6 +229,23 @@ fn meshes() -> (MeshDesc, MeshDesc) {
     (tetrahedron, mesh(positions, (0..n * n).flat_map(cell).collect()))
 }
 
+/// Patches that share edges; one is flat and becomes a quad, one has two corners in one place.
+fn patches() -> MeshDesc {
+    MeshDesc::Patches {
+        positions: vec![
+            [0.0, 1.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0, 0.0, 1.0],
+            [1.5, -0.5, 1.0],
+            [-1.0, 0.0, 0.5],
+            [-1.0, -1.0, 1.5],
+        ],
+        patches: vec![[0, 1, 2, 3], [0, 2, 4, 5], [4, 0, 5, 2], [0, 1, 4, 4]],
+        normals: Vec::new(),
+        uvs: Vec::new(),
+    }
+}
+
 fn leaves(view: &SceneView) -> Vec<PrimRef> {
     let mut leaves = Vec::new();
     let mut links = vec![PrimRef::new(PrimKind::Node, 0)];
@@ -213,7 +264,7 @@ fn leaves(view: &SceneView) -> Vec<PrimRef> {
 fn all_ways_find_the_same_hit() {
     let mut rng = Rng(1);
     let (mut n_hits, mut n_rays, mut n_scenes) = (0, 0, 0);
-    let mut kinds = [0; 11];
+    let mut kinds = [0; 14];
     let mut n_in_instances = 0;
     while n_scenes < 300 {
         let n = [1, 2, 3, 8, 30, 150][rng.below(6) as usize];
@@ -274,6 +325,6 @@ fn all_ways_find_the_same_hit() {
     assert!(n_hits * 12 > n_rays, "{n_hits} hits of {n_rays} rays");
     // Every kind of primitive was hit.
     let hittable = |kind: usize| kind != PrimKind::Instance as usize;
-    assert!((1..11).filter(|&k| hittable(k)).all(|k| kinds[k] > 400), "{kinds:?}");
+    assert!((1..14).filter(|&k| hittable(k)).all(|k| kinds[k] > 400), "{kinds:?}");
     assert!(n_in_instances > 10_000, "{n_in_instances}");
 }

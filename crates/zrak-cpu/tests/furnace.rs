@@ -11,8 +11,8 @@ use common::scenes::{
 use common::{arena, render};
 use zrak_cpu::Tree;
 use zrak_scene::desc::{
-    BoundaryDesc, FresnelDesc, LightSides, MaterialDesc, ObjectDesc, ScaleDesc, SceneDesc,
-    TransformStep,
+    BoundaryDesc, FresnelDesc, LightSides, MaterialDesc, MeshDesc, ObjectDesc, ScaleDesc,
+    SceneDesc, TransformStep,
 };
 
 const N_SAMPLES: u32 = 40;
@@ -73,10 +73,33 @@ fn add_meshes(desc: &mut SceneDesc) {
     desc.meshes = (zrak_scene::builtin::find("workshop").unwrap().build)().meshes;
     // With normals of their own, meshes are not what they look like, and some light is lost.
     for mesh in desc.meshes.values_mut() {
-        if let zrak_scene::desc::MeshDesc::Inline { normals, .. } = mesh {
+        if let MeshDesc::Inline { normals, .. } = mesh {
             normals.clear();
         }
     }
+    // A ball of bent patches: the corners of a cube, pushed out, and the middles of its sides.
+    let mut positions = Vec::new();
+    let mut patches = Vec::new();
+    for axis in 0..3_usize {
+        for side in [-1.0_f32, 1.0] {
+            let first = positions.len() as u32;
+            for k in 0..9 {
+                let mut p = [0.0; 3];
+                p[axis] = side;
+                p[(axis + 1) % 3] = (k % 3) as f32 - 1.0;
+                p[(axis + 2) % 3] = (k / 3) as f32 - 1.0;
+                let length = (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]).sqrt();
+                positions.push(p.map(|x| x / length));
+            }
+            for cell in [0, 1, 3, 4] {
+                let corners = [cell, cell + 1, cell + 3, cell + 4].map(|k| first + k);
+                let [a, b, c, d] = corners;
+                patches.push(if side > 0.0 { corners } else { [a, c, b, d] });
+            }
+        }
+    }
+    let ball = MeshDesc::Patches { positions, patches, normals: Vec::new(), uvs: Vec::new() };
+    desc.meshes.insert("patches".to_owned(), ball);
     let lid = |height, radius, transform| ObjectDesc::Disk {
         height,
         radius,
@@ -103,6 +126,20 @@ fn add_meshes(desc: &mut SceneDesc) {
     );
 }
 
+/// A cap of a sphere, open.
+fn part_of_sphere(z_min: Option<f64>, z_max: Option<f64>) -> ObjectDesc {
+    ObjectDesc::Sphere {
+        center: [0.0; 3],
+        center_end: None,
+        radius: 1.0,
+        z_min,
+        z_max,
+        phi_max_deg: None,
+        material: "m".to_owned(),
+        transform: Vec::new(),
+    }
+}
+
 fn turned(object: ObjectDesc) -> ObjectDesc {
     let axis = [1.0, 2.0, 3.0];
     group(vec![object], vec![TransformStep::Rotate { axis, angle_deg: 35.0 }])
@@ -127,6 +164,12 @@ fn shapes(material: &MaterialDesc) -> Vec<(&'static str, SceneDesc)> {
         ("stretched sphere", vec![stretched(sphere([0.0; 3], 1.0, "m"))]),
         ("triangles", vec![turned(group(triangle_cube("m"), Vec::new()))]),
         ("mesh", vec![turned(mesh("ball", "m", Vec::new()))]),
+        ("patches", vec![turned(mesh("patches", "m", Vec::new()))]),
+        ("stretched patches", vec![stretched(mesh("patches", "m", Vec::new()))]),
+        (
+            "parts of a sphere",
+            vec![turned(part_of_sphere(None, Some(0.2))), turned(part_of_sphere(Some(0.2), None))],
+        ),
         ("flat mesh", vec![stretched(mesh("gem", "m", Vec::new()))]),
         (
             "shared mesh",
@@ -297,9 +340,10 @@ fn closed_lights() {
 /// What leaves a convex body of albedo 1/2 sees nothing but the glow: exactly half of it.
 #[test]
 fn grey_convex_shapes_are_exactly_half_as_bright() {
-    // Two bodies see each other, and the rims of the lids see the side of the can.
-    let is_one = |case: &(&str, SceneDesc)| !["shared mesh", "moving instance"].contains(&case.0);
-    for (name, mut desc) in shapes(&lambertian(0.5)).into_iter().filter(is_one) {
+    // Two bodies see each other, the rims of the lids see the side of the can, and patches are bent inwards.
+    let others = ["shared mesh", "moving instance", "patches", "stretched patches"];
+    let is_convex = |case: &(&str, SceneDesc)| !others.contains(&case.0);
+    for (name, mut desc) in shapes(&lambertian(0.5)).into_iter().filter(is_convex) {
         // One segment to the body and one away from it: a path that needs more is wrong.
         desc.render.max_depth = 2;
         for size in [1e-3, 1.0, 1e5] {

@@ -224,6 +224,14 @@ impl CudaBackend {
     }
 }
 
+impl Drop for CudaBackend {
+    fn drop(&mut self) {
+        // What is given back next belongs to this context, and another may be current by now. A device
+        // that is gone has nothing to be given back.
+        let _ = self.context.make_current();
+    }
+}
+
 fn add(pixels: &mut [PixelSum], others: &[PixelSum]) {
     for (sum, other) in pixels.iter_mut().zip(others) {
         sum.merge(other);

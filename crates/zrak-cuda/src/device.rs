@@ -35,6 +35,14 @@ impl DeviceInfo {
     }
 }
 
+/// Number of CUDA devices.
+///
+/// # Errors
+/// If there is no driver, in words that say so.
+pub fn n_devices() -> Result<u32, BackendError> {
+    device_count()
+}
+
 /// All CUDA devices; none if there is a driver without a device.
 ///
 /// # Errors

@@ -89,6 +89,15 @@ pub(crate) struct Context {
     context: sys::CUcontext,
 }
 
+// SAFETY: the driver lets any thread use a context, and what lives in it, that has made it current, which
+// the backend does at the start of each of its calls; owners are unique, so two threads never use one at
+// the same time.
+unsafe impl Send for Context {}
+// SAFETY: as above.
+unsafe impl Send for Module {}
+// SAFETY: as above; the memory is the process's.
+unsafe impl<T: Pod + Send> Send for PinnedBuffer<T> {}
+
 impl Context {
     pub(crate) fn new(device: Device) -> Result<Self> {
         // SAFETY: the device comes from the driver.

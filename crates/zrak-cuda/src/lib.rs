@@ -6,4 +6,4 @@ mod driver;
 mod kernels;
 
 pub use backend::{CudaBackend, CudaOptions};
-pub use device::{DeviceInfo, devices};
+pub use device::{DeviceInfo, devices, n_devices};

@@ -37,7 +37,7 @@ impl Budget {
     pub(crate) fn exceeded(&self, location: impl Display) -> Error {
         let mib = self.total >> 20;
         let message = format!("the file asks for more than the {mib} MiB of memory it may have");
-        let help = "split the scene, or allow more";
+        let help = "split the scene, or allow more (--max-bytes)";
         Error::new(ErrorKind::TooLarge, location, message, help)
     }
 }

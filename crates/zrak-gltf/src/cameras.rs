@@ -5,8 +5,57 @@ use zrak_scene::lower::Transform;
 use zrak_scene::validate::limits::{PIXELS_MAX, SIDE_MAX};
 
 use crate::buffers::element;
-use crate::error::{Error, Warnings};
+use crate::error::{Error, ErrorKind, Warnings};
 use crate::json::Root;
+
+/// The camera that is wanted among nodes with cameras, and its node; none if there is no camera and none is
+/// asked for.
+pub(crate) fn choose(
+    root: &Root,
+    nodes: &[(usize, usize)],
+    wanted: Option<&str>,
+    warnings: &mut Warnings,
+) -> Result<Option<(usize, usize)>, Error> {
+    // A camera that is not in the file is an error where it is placed.
+    let camera_name = |camera: usize| root.cameras.get(camera).and_then(|c| c.name.as_deref());
+    let name =
+        |node: usize, camera: usize| root.nodes[node].name.as_deref().or(camera_name(camera));
+    let list = || {
+        let names = nodes.iter().take(20).map(|&(node, camera)| name(node, camera).unwrap_or("-"));
+        let names: Vec<_> = names.map(|name| name.escape_debug().to_string()).collect();
+        names.join(", ")
+    };
+    let Some(wanted) = wanted else {
+        if nodes.len() > 1 {
+            let message = format!(
+                "the scene has {} cameras, of which the first is used: {}",
+                nodes.len(),
+                list()
+            );
+            warnings.note("cameras", message);
+        }
+        return Ok(nodes.first().copied());
+    };
+    let is_node = |&&(node, _): &&(usize, usize)| root.nodes[node].name.as_deref() == Some(wanted);
+    let is_camera = |&&(_, camera): &&(usize, usize)| camera_name(camera) == Some(wanted);
+    let found = nodes
+        .iter()
+        .find(is_node)
+        .or_else(|| nodes.iter().find(is_camera))
+        .or_else(|| nodes.get(wanted.parse::<usize>().ok()?));
+    if found.is_none() {
+        let wanted = wanted.escape_debug();
+        let (message, help) = match nodes.len() {
+            0 => (format!("there is no camera '{wanted}': the scene has none"), String::new()),
+            n => (
+                format!("there is no camera '{wanted}' in the scene"),
+                format!("name one of its {n}, or give its number from 0: {}", list()),
+            ),
+        };
+        return Err(Error::new(ErrorKind::Invalid, "cameras", message, help));
+    }
+    Ok(found.copied())
+}
 
 /// The camera of this index, at a node: it looks along -z, with +y up.
 pub(crate) fn place(

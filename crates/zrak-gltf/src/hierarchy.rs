@@ -3,7 +3,7 @@
 use zrak_scene::lower::Transform;
 
 use crate::buffers::element;
-use crate::error::{Error, Warnings};
+use crate::error::{Error, ErrorKind, Warnings};
 use crate::json::{Node, Root};
 
 /// A forest of nodes, without recursion: its depth is the file's choice.
@@ -16,10 +16,24 @@ pub(crate) struct Hierarchy {
     pub(crate) scene: Option<usize>,
 }
 
+/// The index of a scene, by its name or else by its number.
+fn find_scene(root: &Root, wanted: &str) -> Result<usize, Error> {
+    let by_name = root.scenes.iter().position(|scene| scene.name.as_deref() == Some(wanted));
+    let by_number = || wanted.parse().ok().filter(|&i| i < root.scenes.len());
+    by_name.or_else(by_number).ok_or_else(|| {
+        let names = root.scenes.iter().take(20).map(|scene| scene.name.as_deref().unwrap_or("-"));
+        let names: Vec<_> = names.map(|name| name.escape_debug().to_string()).collect();
+        let n = root.scenes.len();
+        let help = format!("name one of its {n}, or give its number from 0: {}", names.join(", "));
+        let message = format!("there is no scene '{}' in the file", wanted.escape_debug());
+        Error::new(ErrorKind::Invalid, "scenes", message, help)
+    })
+}
+
 /// Looks at all nodes, and chooses a scene.
 pub(crate) fn read(
     root: &Root,
-    scene: Option<usize>,
+    scene: Option<&str>,
     warnings: &mut Warnings,
 ) -> Result<Hierarchy, Error> {
     let nodes = &root.nodes;
@@ -51,10 +65,7 @@ pub(crate) fn read(
         world_from_node[i] = local.then(&outer);
     }
     let chosen = match (scene, root.scene) {
-        (Some(index), _) => {
-            element(&root.scenes, "scenes", index, "the scene that was asked for")?;
-            Some(index)
-        }
+        (Some(wanted), _) => Some(find_scene(root, wanted)?),
         (None, Some(index)) => {
             element(&root.scenes, "scenes", index, "scene")?;
             Some(index)

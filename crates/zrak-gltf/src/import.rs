@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use serde_json::de::SliceRead;
 use zrak_scene::desc::SceneDesc;
+use zrak_scene::lower::stays_inside;
 
 use crate::budget::Budget;
 use crate::buffers::{Buffers, Resolver};
@@ -44,13 +45,24 @@ pub struct Imported {
 /// later, when they are read.
 pub fn import(path: &Path, options: &ImportOptions) -> Result<Imported, Error> {
     let base_dir = path.parent().unwrap_or(Path::new("")).to_owned();
-    let read = |path: &Path, max: u64| read_file(path, max);
+    let read = |path: &Path, max: u64| {
+        let bytes = read_file(path, max)?;
+        options.progress.add(bytes.len() as u64);
+        Ok(bytes)
+    };
     let bytes = read(path, options.limits.max_bytes).map_err(|cause| {
         let help = "check the path and that it may be read";
         Error::new(ErrorKind::Io, "", format!("cannot read the file: {cause}"), help)
             .in_file(path.display())
     })?;
-    let resolver = |name: &str, max: u64| read(&base_dir.join(name), max);
+    let resolver = |name: &str, max: u64| {
+        let base = if base_dir.as_os_str().is_empty() { Path::new(".") } else { &base_dir };
+        // Paths are checked as text before; a link may still lead anywhere.
+        if !options.allow_external && !stays_inside(base, Path::new(name)) {
+            return Err("it is outside of the file's folder; --allow-external reads it".to_owned());
+        }
+        read(&base.join(name), max)
+    };
     let mut imported =
         parse_gltf(&bytes, &resolver, options).map_err(|e| e.in_file(path.display()))?;
     if imported.desc.name.is_empty() {
@@ -102,7 +114,12 @@ fn parse_json(json: &[u8], options: &ImportOptions) -> Result<Root, Error> {
     let max = options.limits.max_objects;
     if n_objects > max {
         let message = format!("the file has {n_objects} JSON objects; at most {max} are read");
-        return Err(Error::new(ErrorKind::TooLarge, "", message, "split the scene, or allow more"));
+        return Err(Error::new(
+            ErrorKind::TooLarge,
+            "",
+            message,
+            "split the scene, or allow more (--max-bytes)",
+        ));
     }
     let mut deserializer = serde_json::Deserializer::new(SliceRead::new(json));
     let syntax = |location: &str, e: &serde_json::Error| {
@@ -141,7 +158,7 @@ fn scene(
     warnings: &mut Warnings,
 ) -> Result<(SceneDesc, Assets), Error> {
     let root = source.root;
-    let hierarchy = hierarchy::read(root, options.scene, warnings)?;
+    let hierarchy = hierarchy::read(root, options.scene.as_deref(), warnings)?;
     if !root.animations.is_empty() {
         let message = "animations are not played: the nodes stay where the file has them";
         warnings.note("animations", message);
@@ -180,25 +197,15 @@ fn scene(
             camera_nodes.push((i, camera));
         }
     }
-    let camera = match camera_nodes.get(options.camera) {
-        Some(&(node, camera)) => {
+    let chosen = cameras::choose(root, &camera_nodes, options.camera.as_deref(), warnings)?;
+    let camera = match chosen {
+        Some((node, camera)) => {
             let at = format!("nodes[{node}].camera");
             let world = &hierarchy.world_from_node[node];
             Some(cameras::place(root, camera, &at, world, options.height, warnings)?)
         }
         None => None,
     };
-    let n_cameras = camera_nodes.len();
-    if camera.is_none() && (n_cameras > 0 || options.camera > 0) {
-        let message = format!("there is no camera {}; the scene has {n_cameras}", options.camera);
-        let help = "choose one of them, counted from 0";
-        return Err(Error::new(ErrorKind::Invalid, "cameras", message, help));
-    }
-    if n_cameras > 1 {
-        let message =
-            format!("the scene has {n_cameras} cameras; number {} is used", options.camera);
-        warnings.note("cameras", message);
-    }
     let placed = placer.finish(warnings)?;
     let camera = camera.unwrap_or_else(|| {
         let bounds = placed.bounds.unwrap_or([[-1.0; 3], [1.0; 3]]);

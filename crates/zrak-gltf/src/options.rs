@@ -1,16 +1,19 @@
 //! What an import may be told.
 
+use zrak_scene::progress::LoadProgress;
+
 /// How a file is read.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct ImportOptions {
     /// How much memory it may ask for.
     pub limits: Limits,
     /// Whether buffers and images may be outside of the file's folder.
     pub allow_external: bool,
-    /// Index of the scene; without it the file's default scene, or else its first.
-    pub scene: Option<usize>,
-    /// Which of the scene's cameras, in the order of its nodes.
-    pub camera: usize,
+    /// Name or index of the scene; without it the file's default scene, or else its first.
+    pub scene: Option<String>,
+    /// Which of the scene's cameras: the name of its node, or its own, or else its number in the order
+    /// of the nodes, from 0; without it the first.
+    pub camera: Option<String>,
     /// Height of the picture in pixels; its width follows from the camera.
     pub height: u32,
     /// Luminous efficacy by which the candela and lux of lights become radiometric units. 683 is
@@ -20,6 +23,8 @@ pub struct ImportOptions {
     pub cull_back_faces: bool,
     /// Whether a scene without lights gets a soft environment.
     pub default_light: bool,
+    /// Is told of the bytes that are read.
+    pub progress: LoadProgress,
 }
 
 impl Default for ImportOptions {
@@ -28,11 +33,12 @@ impl Default for ImportOptions {
             limits: Limits::default(),
             allow_external: false,
             scene: None,
-            camera: 0,
+            camera: None,
             height: 720,
             lumens_per_watt: 683.0,
             cull_back_faces: false,
             default_light: true,
+            progress: LoadProgress::default(),
         }
     }
 }

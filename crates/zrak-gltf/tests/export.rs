@@ -131,6 +131,9 @@ fn shapes_are_written_where_they_stand() {
             center: [1.0, 2.0, 3.0],
             center_end: None,
             radius: 2.0,
+            z_min: None,
+            z_max: None,
+            phi_max_deg: None,
             material: "grey".into(),
             transform: Vec::new(),
         },
@@ -236,7 +239,7 @@ fn what_gltf_cannot_say_is_warned_of() {
     });
     let (bytes, warnings) = to_glb(&desc, Path::new(""), &no_assets()).unwrap();
     let places: Vec<_> = warnings.iter().map(|w| w.location.as_str()).collect();
-    assert_eq!(places, ["camera.defocus_angle_deg", "lights[0]", "background"]);
+    assert_eq!(places, ["background", "camera.defocus_angle_deg", "lights[0]"]);
     read(&bytes);
 }
 

@@ -104,7 +104,8 @@ fn the_right_scene_is_chosen() {
     let mut file = Builder::triangle();
     file.push("nodes", json!({"mesh": 0, "translation": [7, 0, 0]}));
     file.push("scenes", json!({"nodes": [1], "name": "second"}));
-    let x = |file: &Builder, scene| {
+    let x = |file: &Builder, scene: Option<usize>| {
+        let scene = scene.map(|i| i.to_string());
         let options = ImportOptions { scene, ..ImportOptions::default() };
         map_of(&file.import_with(&options).unwrap().desc.objects[0]).rows[0][3]
     };
@@ -114,7 +115,7 @@ fn the_right_scene_is_chosen() {
     assert_eq!(x(&file, None), 7.0);
     assert_eq!(x(&file, Some(0)), 0.0);
     assert_eq!(file.import_clean().desc.name, "second");
-    let options = ImportOptions { scene: Some(2), ..ImportOptions::default() };
+    let options = ImportOptions { scene: Some("2".into()), ..ImportOptions::default() };
     assert!(file.import_with(&options).is_err());
 }
 
@@ -161,12 +162,39 @@ fn orthographic_cameras_and_the_choice_among_several() {
     file.json["scenes"][0]["nodes"] = json!([0, 1, 2]);
     let first = file.import_warned(&["2 cameras"]).desc.camera;
     assert_eq!((first.width, first.height), (1280, 720));
-    let options = ImportOptions { camera: 1, height: 100, ..ImportOptions::default() };
-    let second = file.import_with(&options).unwrap().desc.camera;
+    let with = |camera: &str| ImportOptions {
+        camera: Some(camera.to_owned()),
+        height: 100,
+        ..ImportOptions::default()
+    };
+    let second = file.import_with(&with("1")).unwrap().desc.camera;
     assert_eq!(second.projection, ProjectionDesc::Orthographic { height: 8.0 });
     assert_eq!((second.width, second.height, second.flip_x), (50, 100, true));
-    let options = ImportOptions { camera: 2, ..ImportOptions::default() };
-    assert!(file.import_with(&options).unwrap_err().to_string().contains("no camera 2"));
+    // By name: of nodes, then of cameras, then by number.
+    file.json["nodes"][1]["name"] = json!("front");
+    file.json["cameras"][1]["name"] = json!("plan");
+    for (camera, expected) in [("front", 178), ("plan", 50), ("0", 178), ("1", 50)] {
+        let camera = file.import_with(&with(camera)).unwrap().desc.camera;
+        assert_eq!(camera.width, expected);
+    }
+    file.json["nodes"][2]["name"] = json!("0");
+    assert_eq!(file.import_with(&with("0")).unwrap().desc.camera.width, 50);
+    let error = file.import_with(&with("2")).unwrap_err().to_string();
+    assert!(error.contains("no camera '2'") && error.contains("front, 0"), "{error}");
+}
+
+#[test]
+fn scenes_are_chosen_by_name_or_number() {
+    let mut file = Builder::triangle();
+    file.json["scenes"] = json!([{"nodes": [0], "name": "full"}, {"nodes": [], "name": "empty"}]);
+    let with =
+        |scene: &str| ImportOptions { scene: Some(scene.to_owned()), ..ImportOptions::default() };
+    for (scene, n_objects) in [("full", 1), ("empty", 0), ("0", 1), ("1", 0)] {
+        let imported = file.import_with(&with(scene)).unwrap();
+        assert_eq!(imported.desc.objects.len(), n_objects, "{scene}");
+    }
+    let error = file.import_with(&with("none")).unwrap_err().to_string();
+    assert!(error.contains("no scene 'none'") && error.contains("full, empty"), "{error}");
 }
 
 #[test]

@@ -67,12 +67,20 @@ impl Error {
 pub(crate) struct Fault {
     pub(crate) kind: ErrorKind,
     pub(crate) cause: String,
+    /// Bytes that the texels would take, if they are too many.
+    pub(crate) n_bytes: Option<u64>,
 }
 
 impl Fault {
     pub(crate) fn new(kind: ErrorKind, cause: impl Display) -> Self {
         // Causes come from several decoders; they are put in the middle of a sentence.
-        Self { kind, cause: cause.to_string().trim_end_matches('.').to_owned() }
+        Self { kind, cause: cause.to_string().trim_end_matches('.').to_owned(), n_bytes: None }
+    }
+
+    pub(crate) fn too_many_bytes(width: u64, height: u64, n_bytes: u64, limit: u64) -> Self {
+        let cause =
+            format!("its {width}x{height} texels take {n_bytes} bytes and the limit is {limit}");
+        Self { n_bytes: Some(n_bytes), ..Self::new(ErrorKind::TooLarge, cause) }
     }
 
     pub(crate) fn damaged(cause: impl Display) -> Self {

@@ -25,8 +25,13 @@ mod picture;
 mod srgb;
 
 pub use compare::{Comparison, compare};
-pub use decode::{Limits, Texels, TextureImage, decode_texture, read_picture, read_texture};
-pub use encode::{Transfer, check_writable, encode, replace_file, write};
+pub use decode::{
+    Limits, Texels, TextureImage, decode_texture, read_image_file, read_picture, read_texture,
+    texel_bytes,
+};
+pub use encode::{
+    Transfer, check_replaceable, check_writable, encode, replace_file, replace_file_with, write,
+};
 pub use error::{Error, ErrorKind};
 pub use format::Format;
 pub use metadata::Metadata;

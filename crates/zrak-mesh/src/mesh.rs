@@ -1,6 +1,11 @@
 //! Indexed triangles in memory.
 
+use rayon::prelude::*;
+
 use crate::Error;
+
+/// Vertices or triangles that a thread looks at at a time.
+const CHUNK: usize = 1 << 15;
 
 /// Indexed triangles. Arrays other than `positions` and `triangles` are empty if there is nothing in
 /// them, and else have one entry for each vertex or, `face_groups`, for each triangle.
@@ -54,7 +59,7 @@ impl TriangleMesh {
             }
         }
         let is_beyond = |t: &[u32; 3]| t.iter().any(|&v| v as usize >= n);
-        if let Some(i) = self.triangles.iter().position(is_beyond) {
+        if let Some(i) = find(&self.triangles, is_beyond) {
             let message = format!(
                 "triangle {i} of the mesh has a corner beyond its {n} vertices: {:?}",
                 self.triangles[i]
@@ -83,6 +88,10 @@ impl TriangleMesh {
                 })
             }
         };
+        // Most meshes have none, and nothing has to be moved.
+        if find(&self.triangles, |t| !has_area(t)).is_none() {
+            return 0;
+        }
         let before = self.triangles.len();
         if self.face_groups.is_empty() {
             self.triangles.retain(has_area);
@@ -109,8 +118,15 @@ impl TriangleMesh {
     }
 }
 
+/// Index of the first item that is so.
+fn find<T: Sync>(items: &[T], is: impl Fn(&T) -> bool + Sync) -> Option<usize> {
+    let has = |chunk: &[T]| chunk.iter().any(&is);
+    let first = items.par_chunks(CHUNK).position_first(has)? * CHUNK;
+    items[first..].iter().position(is).map(|i| first + i)
+}
+
 fn finite<const N: usize>(what: &str, values: &[[f32; N]]) -> Result<(), Error> {
-    match values.iter().position(|v| v.iter().any(|x| !x.is_finite())) {
+    match find(values, |v| v.iter().any(|x| !x.is_finite())) {
         Some(i) => {
             let message =
                 format!("the {what} of vertex {i} of the mesh is not finite: {:?}", values[i]);

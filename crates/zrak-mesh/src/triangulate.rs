@@ -1,16 +1,49 @@
 //! Polygons as triangles.
 
 /// Cuts a polygon into triangles, given the positions of its corners: quads along the diagonal of
-/// corners 0 and 2, others by clipping ears, so that concave ones come out right. Always gives two
-/// triangles less than there are corners.
+/// corners 0 and 2 unless it lies outside of them, others by clipping ears, so that concave ones come out
+/// right. Always gives two triangles less than there are corners.
 pub(crate) fn triangulate(corners: &[u32], positions: &[[f32; 3]], out: &mut Vec<[u32; 3]>) {
-    if corners.len() <= 4 || corners.len() > MAX_CLIPPED {
-        out.extend((2..corners.len()).map(|i| [corners[0], corners[i - 1], corners[i]]));
+    let position = |i: usize| positions[corners[i] as usize];
+    triangulate_by(corners.len(), position, |triangle| out.push(triangle.map(|i| corners[i])));
+}
+
+/// [`triangulate`] with the positions of `n` corners by their number; gives numbers of corners.
+#[inline]
+pub(crate) fn triangulate_by(
+    n: usize,
+    position: impl Fn(usize) -> [f32; 3],
+    mut add: impl FnMut([usize; 3]),
+) {
+    if n == 4 && is_bent(&[0, 1, 2, 3].map(|i| position(i).map(f64::from))) {
+        add([1, 2, 3]);
+        add([1, 3, 0]);
         return;
     }
+    if n <= 4 || n > MAX_CLIPPED {
+        (2..n).for_each(|i| add([0, i - 1, i]));
+        return;
+    }
+    let positions: Vec<[f64; 3]> = (0..n).map(|i| position(i).map(f64::from)).collect();
+    clip_ears(&positions, &mut add);
+}
+
+/// Whether the two triangles on both sides of the diagonal of corners 0 and 2 lie on each other.
+#[inline]
+fn is_bent(p: &[[f64; 3]; 4]) -> bool {
+    let from_first = |i: usize| [0, 1, 2].map(|axis| p[i][axis] - p[0][axis]);
+    let [a, b, c] = [1, 2, 3].map(from_first);
+    let cross = |u: [f64; 3], v: [f64; 3]| {
+        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    };
+    let (m, n) = (cross(a, b), cross(b, c));
+    m[0] * n[0] + m[1] * n[1] + m[2] * n[2] < 0.0
+}
+
+fn clip_ears(positions: &[[f64; 3]], add: &mut dyn FnMut([usize; 3])) {
     // Newell's normal of the polygon decides the plane that ears are looked for in.
-    let point = |i: usize| positions[corners[i] as usize].map(f64::from);
-    let n = corners.len();
+    let point = |i: usize| positions[i];
+    let n = positions.len();
     let mut normal = [0.0_f64; 3];
     for i in 0..n {
         let (a, b) = (point(i), point((i + 1) % n));
@@ -45,10 +78,10 @@ pub(crate) fn triangulate(corners: &[u32], positions: &[[f32; 3]], out: &mut Vec
         // One that crosses itself has none; any corner will do.
         let i = ear.unwrap_or(0);
         let (a, b, c) = (left[(i + m - 1) % m], left[i], left[(i + 1) % m]);
-        out.push([corners[a], corners[b], corners[c]]);
+        add([a, b, c]);
         left.remove(i);
     }
-    out.push([corners[left[0]], corners[left[1]], corners[left[2]]]);
+    add([left[0], left[1], left[2]]);
 }
 
 /// Polygons with more corners are fans: clipping takes the cube of their number at worst.
@@ -68,8 +101,10 @@ mod tests {
 
     #[test]
     fn concave_polygons_are_covered_once() {
-        // An arrow head, an L and a star, counter-clockwise; no triangle may be turned over.
-        let shapes: [&[[f32; 2]]; 3] = [
+        // Two darts, an arrow head, an L and a star, counter-clockwise; no triangle may be turned over.
+        let shapes: [&[[f32; 2]]; 5] = [
+            &[[0.0, 0.0], [2.0, -1.0], [1.0, 0.0], [2.0, 1.0]],
+            &[[2.0, -1.0], [1.0, 0.0], [2.0, 1.0], [0.0, 0.0]],
             &[[0.0, 0.0], [2.0, -2.0], [0.0, 4.0], [-2.0, -2.0], [-0.5, -0.5]],
             &[[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]],
             &[

@@ -4,6 +4,7 @@ use zrak_scene::desc::{CameraDesc, ProjectionDesc};
 use zrak_scene::lower::Transform;
 
 use crate::error::{Fault, Result, Span};
+use crate::lens::ThinLens;
 use crate::params::Params;
 use crate::state::{Importer, cross, dot};
 
@@ -21,11 +22,13 @@ pub(crate) struct CameraSoFar {
 pub(crate) struct Film {
     size: [u32; 2],
     crop: [f64; 4],
+    iso: f64,
+    diagonal_mm: f64,
 }
 
 impl Default for Film {
     fn default() -> Self {
-        Self { size: [1280, 720], crop: [0.0, 1.0, 0.0, 1.0] }
+        Self { size: [1280, 720], crop: [0.0, 1.0, 0.0, 1.0], iso: 100.0, diagonal_mm: 35.0 }
     }
 }
 
@@ -33,8 +36,7 @@ impl Importer {
     pub(crate) fn camera_directive(&mut self, kind: &str, at: &Span, params: Params) -> Result<()> {
         let kinds = ["perspective", "orthographic", "spherical", "realistic"];
         if !kinds.contains(&kind) {
-            let fault = Fault::new(at, format!("unknown camera \"{kind}\""));
-            return Err(fault.help(format!("there are {}", kinds.join(", "))));
+            return Err(Fault::unknown(at, "camera", kind, &kinds));
         }
         let ctm = self.state.ctm;
         if ctm.is_moving() {
@@ -49,58 +51,117 @@ impl Importer {
         Ok(())
     }
 
-    pub(crate) fn film_directive(&mut self, params: Params) -> Result<()> {
+    pub(crate) fn film_directive(&mut self, kind: &str, at: &Span, params: Params) -> Result<()> {
+        let kinds = ["rgb", "gbuffer", "spectral"];
+        if !kinds.contains(&kind) {
+            return Err(Fault::unknown(at, "film", kind, &kinds));
+        }
         let side = |name: &str, default: u32| -> Result<u32> {
             let Some(n) = params.integer(name)? else { return Ok(default) };
             if (1..=65_536).contains(&n) {
                 return Ok(n as u32);
             }
-            Err(Fault::new(&params.span, format!("`{name}` must be from 1 to 65536, is {n}")))
+            let message = format!("`{name}` must be from 1 to 65536, is {n}");
+            Err(Fault::new(&params.span_of(name), message))
         };
         self.film.size = [side("xresolution", 1280)?, side("yresolution", 720)?];
-        if let Some(&[x0, x1, y0, y1]) = params.numbers(&["float"], "cropwindow")? {
-            let ok = |a: f64, b: f64| a >= 0.0 && a < b && b <= 1.0;
-            if !ok(x0, x1) || !ok(y0, y1) {
-                return Err(Fault::new(
-                    &params.span,
-                    "`cropwindow` has no size within the picture",
-                ));
+        let [w, h] = self.film.size.map(f64::from);
+        let window = |name: &str, kind: &str| -> Result<Option<[f64; 4]>> {
+            match params.numbers(&[kind], name)? {
+                None => Ok(None),
+                Some(&[x0, x1, y0, y1]) => Ok(Some([x0, x1, y0, y1])),
+                Some(_) => {
+                    let message = format!("`{name}` must be left, right, top and bottom");
+                    Err(Fault::new(&params.span_of(name), message))
+                }
+            }
+        };
+        // What is beyond the picture is cut off, as in pbrt.
+        for (name, kind, scale) in
+            [("pixelbounds", "integer", [1.0 / w, 1.0 / h]), ("cropwindow", "float", [1.0; 2])]
+        {
+            let Some([x0, x1, y0, y1]) = window(name, kind)? else { continue };
+            let part = |a: f64, b: f64, scale: f64| {
+                [a.min(b) * scale, a.max(b) * scale].map(|x| x.clamp(0.0, 1.0))
+            };
+            let ([x0, x1], [y0, y1]) = (part(x0, x1, scale[0]), part(y0, y1, scale[1]));
+            if x0 >= x1 || y0 >= y1 {
+                let message = format!("`{name}` has no size within the picture");
+                return Err(Fault::new(&params.span_of(name), message));
             }
             self.film.crop = [x0, x1, y0, y1];
         }
-        if let Some(&[x0, x1, y0, y1]) = params.numbers(&["integer"], "pixelbounds")? {
-            let [w, h] = self.film.size.map(f64::from);
-            let ok = |a: f64, b: f64, n: f64| a >= 0.0 && a < b && b <= n;
-            if !ok(x0, x1, w) || !ok(y0, y1, h) {
-                return Err(Fault::new(
-                    &params.span,
-                    "`pixelbounds` has no size within the picture",
-                ));
-            }
-            self.film.crop = [x0 / w, x1 / w, y0 / h, y1 / h];
-        }
+        self.film.diagonal_mm = params.float("diagonal")?.unwrap_or(35.0).max(1e-3);
         if let Some(name) = params.string("filename")? {
             self.filename = Some(name.to_owned());
         }
-        let exposure = params.float("exposuretime")?.unwrap_or(1.0);
-        self.exposure = exposure * params.float("iso")?.unwrap_or(100.0) / 100.0;
-        if !(self.exposure > 0.0 && self.exposure < 1e9) {
-            return Err(Fault::new(&params.span, "the film is not exposed to any light"));
+        self.film.iso = params.float("iso")?.unwrap_or(100.0);
+        if !(self.film.iso > 0.0 && self.film.iso < 1e9) {
+            let message = format!("`iso` must be more than 0, is {}", self.film.iso);
+            return Err(Fault::new(&params.span_of("iso"), message));
         }
         if params.string("sensor")?.is_some_and(|name| name != "cie1931") {
             self.warn(
-                &params.span,
+                &params.span_of("sensor"),
                 "sensors of real cameras are not simulated: the film is CIE 1931's",
             );
         }
+        for (name, what) in [
+            ("whitebalance", "colours are not balanced: `whitebalance` is not read"),
+            (
+                "maxcomponentvalue",
+                "bright samples are not cut off: `maxcomponentvalue` is not read",
+            ),
+        ] {
+            if params.float(name)?.is_some_and(|x| x != 0.0) {
+                self.warn(&params.span_of(name), what);
+            }
+        }
         params.ignore(&[
-            "diagonal",
             "savefp16",
-            "maxcomponentvalue",
-            "whitebalance",
             "coordinatesystem",
+            // Of spectral films.
+            "nbuckets",
+            "lambdamin",
+            "lambdamax",
         ]);
         self.warn_unused(&params);
+        Ok(())
+    }
+
+    /// The lens of a realistic camera, as a thin one.
+    fn realistic(&mut self, params: &Params) -> Result<ThinLens> {
+        let Some(name) = params.string("lensfile")?.map(str::to_owned) else {
+            let fault = Fault::new(&params.span, "a realistic camera needs a \"string lensfile\"");
+            return Err(fault.help("it names a file of the lens's surfaces"));
+        };
+        let span = params.span_of("lensfile");
+        let [width, height] = self.film.size.map(f64::from);
+        let short =
+            self.film.diagonal_mm * width.min(height) / (width * width + height * height).sqrt();
+        let diameter = params.float("aperturediameter")?.unwrap_or(1.0).max(0.0);
+        let focus = params.float("focusdistance")?.unwrap_or(10.0).max(1e-6);
+        params.ignore(&["aperture"]);
+        self.warn(
+            &span,
+            "the surfaces of a lens are not traced: it is a thin lens of its focal length",
+        );
+        self.lens(&name, &span, short, diameter, focus)
+    }
+
+    /// How much of the light the film sees: the time that the shutter is open, and the film's speed.
+    pub(crate) fn expose(&mut self) -> Result<()> {
+        let Some(camera) = &self.camera else { return Ok(()) };
+        let params = &camera.params;
+        let [open, close] = [("shutteropen", 0.0), ("shutterclose", 1.0)]
+            .map(|(name, default)| params.float(name).map(|x| x.unwrap_or(default)));
+        let (open, close) = (open?, close?);
+        if !(close > open) {
+            let message = format!("the shutter closes (at {close}) before it opens (at {open})");
+            let fault = Fault::new(&params.span_of("shutterclose"), message);
+            return Err(fault.help("`shutteropen` must be less than `shutterclose`"));
+        }
+        self.exposure = (close - open) * self.film.iso / 100.0;
         Ok(())
     }
 
@@ -150,27 +211,38 @@ impl Importer {
             within(view[2], view[3], y[0], height),
             within(view[2], view[3], y[1], height),
         ];
-        let fov = params.float("fov")?.unwrap_or(90.0);
+        let lens = if kind == "realistic" { Some(self.realistic(&params)?) } else { None };
+        let fov = match lens {
+            Some(lens) => lens.fov_deg,
+            None => params.float("fov")?.unwrap_or(90.0),
+        };
         if !(fov > 0.0 && fov < 180.0) {
-            return Err(Fault::new(&params.span, "`fov` must be between 0 and 180 degrees"));
+            let message = format!("`fov` must be between 0 and 180 degrees, is {fov}");
+            return Err(Fault::new(&params.span_of("fov"), message));
         }
         let half = libm::tan(fov * (std::f64::consts::PI / 360.0));
         let to_deg = |radians: f64| radians * (180.0 / std::f64::consts::PI);
-        let lens_radius = params.float("lensradius")?.unwrap_or(0.0);
+        let (lens_radius, focus) = match lens {
+            Some(lens) => (lens.radius, lens.focus),
+            None => (
+                params.float("lensradius")?.unwrap_or(0.0),
+                params.float("focaldistance")?.unwrap_or(1e6),
+            ),
+        };
         // Distances are measured in the camera's space.
-        let focus = params.float("focaldistance")?.unwrap_or(1e6) * length(forward);
+        let focus = focus * length(forward);
         let has_lens = lens_radius > 0.0 && focus > 0.0;
         let lens_radius = lens_radius * length(right);
         let projection = match kind.as_str() {
             "orthographic" => ProjectionDesc::Orthographic { height: 2.0 * reach[1] * length(up) },
             "spherical" => match params.string("mapping")? {
                 Some("equirectangular") => ProjectionDesc::Equirectangular,
-                _ => ProjectionDesc::EqualArea,
+                None | Some("equalarea") => ProjectionDesc::EqualArea,
+                Some(other) => {
+                    let all = ["equalarea", "equirectangular"];
+                    return Err(Fault::unknown(&params.span_of("mapping"), "mapping", other, &all));
+                }
             },
-            "realistic" => {
-                self.warn(&params.span, "lenses are not simulated: the camera is a pinhole");
-                ProjectionDesc::Perspective
-            }
             _ => ProjectionDesc::Perspective,
         };
         let is_round =
@@ -202,14 +274,7 @@ impl Importer {
             camera.flip_x = dot(forward, cross(right, up)) > 0.0;
         }
         self.desc.camera = camera;
-        params.ignore(&[
-            "shutteropen",
-            "shutterclose",
-            "lensfile",
-            "aperturediameter",
-            "focusdistance",
-            "aperture",
-        ]);
+        params.ignore(&["shutteropen", "shutterclose"]);
         self.warn_unused(&params);
         Ok(())
     }

@@ -24,6 +24,15 @@ impl Fault {
         Self { span: span.clone(), message: message.into(), help: None }
     }
 
+    /// That there is no such thing, with the one that may be meant or with all.
+    pub(crate) fn unknown(span: &Span, what: &str, name: &str, all: &[&str]) -> Self {
+        let fault = Self::new(span, format!("unknown {what} \"{name}\""));
+        match zrak_scene::suggest::closest(name, all.iter().copied()) {
+            Some(near) => fault.help(format!("did you mean \"{near}\"?")),
+            None => fault.help(format!("there are {}", all.join(", "))),
+        }
+    }
+
     pub(crate) fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self

@@ -84,3 +84,39 @@ pub(crate) fn unquote(quoted: &str) -> String {
     }
     out
 }
+
+/// Reads numbers as long as there are only blanks between them; gives where it stopped, before whatever
+/// is no number or is left to those who tell what is wrong with it.
+pub(crate) fn numbers(text: &str, at: usize, out: &mut Vec<f64>) -> usize {
+    let bytes = text.as_bytes();
+    let mut i = at;
+    loop {
+        while i < bytes.len() && matches!(bytes[i], b' ' | b'\t' | b'\r' | b'\n') {
+            i += 1;
+        }
+        let start = i;
+        let mut integer = 0_u64;
+        while i < bytes.len() && bytes[i].is_ascii_digit() {
+            integer = integer.wrapping_mul(10).wrapping_add(u64::from(bytes[i] - b'0'));
+            i += 1;
+        }
+        let n_digits = i - start;
+        while i < bytes.len() && matches!(bytes[i], b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E')
+        {
+            i += 1;
+        }
+        let ends =
+            bytes.get(i).is_none_or(|b| matches!(b, b' ' | b'\t' | b'\r' | b'\n' | b']' | b'#'));
+        if i == start || !ends {
+            return start;
+        }
+        if n_digits == i - start && n_digits <= 15 {
+            out.push(integer as f64);
+            continue;
+        }
+        match text.get(start..i).map(str::parse::<f64>) {
+            Some(Ok(x)) if x.is_finite() => out.push(x),
+            _ => return start,
+        }
+    }
+}

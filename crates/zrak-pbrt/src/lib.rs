@@ -14,15 +14,28 @@
 
 mod camera;
 mod color;
+mod curves;
+mod directives;
 mod error;
+mod facts;
+mod given;
+mod lens;
 mod lexer;
 mod lights;
 mod materials;
+mod maths;
+mod media;
 mod params;
+mod places;
+mod reader;
+mod references;
+mod scopes;
+mod settings;
 mod shapes;
 mod source;
 mod spectrum;
 mod state;
+mod surfaces;
 mod textures;
 
 #[cfg(test)]

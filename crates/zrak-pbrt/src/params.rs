@@ -69,12 +69,22 @@ impl Params {
         Some(found)
     }
 
+    /// Whether there is a parameter of this name, of any type.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.all.iter().any(|p| p.name == name)
+    }
+
     /// Parameters that nothing has asked for.
     pub(crate) fn unused(&self) -> impl Iterator<Item = &Param> {
         self.all.iter().filter(|p| !p.used.get())
     }
 
-    /// Marks a parameter as one that is known to have no effect here.
+    /// Marks all parameters as ones that are known to have no effect here.
+    pub(crate) fn ignore_all(&self) {
+        self.all.iter().for_each(|p| p.used.set(true));
+    }
+
+    /// Marks parameters as ones that is known to have no effect here.
     pub(crate) fn ignore(&self, names: &[&str]) {
         self.all.iter().filter(|p| names.contains(&p.name.as_str())).for_each(|p| p.used.set(true));
     }
@@ -125,8 +135,15 @@ impl Params {
         self.word(&["string"], name)
     }
 
-    pub(crate) fn texture(&self, name: &str) -> Result<Option<&str>> {
-        self.word(&["texture"], name)
+    /// The name of a texture, and where it stands.
+    pub(crate) fn texture(&self, name: &str) -> Result<Option<(&str, &Span)>> {
+        let word = self.word(&["texture"], name)?;
+        Ok(word.zip(self.find(&["texture"], name).map(|param| &param.span)))
+    }
+
+    /// Where a parameter stands, or the directive if there is none.
+    pub(crate) fn span_of(&self, name: &str) -> Span {
+        self.all.iter().find(|p| p.name == name).map_or(&self.span, |p| &p.span).clone()
     }
 
     fn word(&self, kinds: &[&str], name: &str) -> Result<Option<&str>> {

@@ -169,7 +169,8 @@ impl Sources {
         let mesh = match &self.store {
             Store::Disk => ply::read(path, &limits).map_err(|error| error.to_string()),
             store => store.read(path, &limits).and_then(|bytes| {
-                ply::parse(&bytes, &limits).map_err(|error| format!("{}: {error}", path.display()))
+                ply::parse(&bytes, &limits)
+                    .map_err(|error| error.in_file(path.display()).to_string())
             }),
         };
         mesh.map_err(|message| Fault::new(span, message))
@@ -195,6 +196,11 @@ impl Sources {
             self.options.max_bytes
         );
         Err(Fault::new(span, message).help("raise the limit if the scene is meant"))
+    }
+
+    /// Whether pictures can be looked at: of those of a scene in memory only the paths are known.
+    pub(crate) fn has_pictures(&self) -> bool {
+        matches!(self.store, Store::Disk)
     }
 
     pub(crate) fn is_file(&self, path: &Path) -> bool {

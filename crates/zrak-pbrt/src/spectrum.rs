@@ -1,11 +1,12 @@
 //! Spectra as colours.
 //!
-//! A reflectance is seen under white: its colour is the ratio of the light it reflects of an even
-//! spectrum, integrated with the colour matching functions, to that of a white surface. Emitted light
+//! A reflectance is seen under daylight (D65), the white of sRGB: its colour is that of the light it
+//! reflects, integrated with the colour matching functions, as one of a white surface. Emitted light
 //! is normalised to a luminance of 1, as pbrt does with everything but its RGB values, and takes its
 //! chromaticity from its spectrum.
 
 use crate::color::{LAMBDA, Rgb, xyz, xyz_to_srgb};
+use crate::facts::{D65, GLASSES, ILLUMINANTS, METAL_LAMBDA, METALS};
 
 /// A spectrum: values at wavelengths in nanometres, in increasing order, linear in between and constant
 /// beyond both ends.
@@ -52,12 +53,19 @@ fn planck(lambda_nm: f64, kelvin: f64) -> f64 {
     1.0 / (x * x * x * x * x * libm::expm1(C2 / (lambda_nm * kelvin)))
 }
 
-/// Colour of a reflectance: white for one that is 1 everywhere, whatever the white of the space.
+/// Relative power of daylight, CIE's D65.
+fn daylight(lambda: f64) -> f64 {
+    let at = ((lambda - 380.0) / 10.0).clamp(0.0, 39.999);
+    let (i, t) = (at as usize, at.fract());
+    D65[i] + (D65[i + 1] - D65[i]) * t
+}
+
+/// Colour of a reflectance under daylight: white for one that is 1 everywhere.
 pub(crate) fn reflectance_rgb(f: impl Fn(f64) -> f64) -> Rgb {
-    let (seen, even) = (integrate(f), integrate(|_| 1.0));
-    // Under the even spectrum white is not sRGB's: scale XYZ from one to the other.
+    let (seen, all) = (integrate(|lambda| f(lambda) * daylight(lambda)), integrate(daylight));
+    // The fitted matching functions see D65 a little off sRGB's white: scale XYZ from one to the other.
     let white = white_xyz();
-    xyz_to_srgb(std::array::from_fn(|i| seen[i] / even[i] * white[i]))
+    xyz_to_srgb(std::array::from_fn(|i| seen[i] / all[i] * white[i]))
 }
 
 /// XYZ of sRGB's white at Y = 1.
@@ -71,8 +79,17 @@ pub(crate) fn emission_rgb(f: impl Fn(f64) -> f64) -> Rgb {
     if seen[1] <= 0.0 {
         return [0.0; 3];
     }
-    // Colours beyond what sRGB can show are brought to its rim.
-    let rgb = xyz_to_srgb(seen.map(|x| x / seen[1])).map(|x| x.max(0.0));
+    on_rim(seen.map(|x| x / seen[1]))
+}
+
+/// Colour of light of a chromaticity, with a luminance of 1.
+pub(crate) fn chromaticity_rgb([x, y]: [f64; 2]) -> Rgb {
+    on_rim([x / y, 1.0, (1.0 - x - y) / y])
+}
+
+/// Colours beyond what sRGB can show are brought to its rim.
+fn on_rim(xyz: [f64; 3]) -> Rgb {
+    let rgb = xyz_to_srgb(xyz).map(|x| x.max(0.0));
     let luminance = 0.212_639 * rgb[0] + 0.715_169 * rgb[1] + 0.072_192 * rgb[2];
     rgb.map(|x| x / luminance)
 }
@@ -106,63 +123,57 @@ pub(crate) fn dielectric_index(spectrum: &Spectrum) -> f64 {
 }
 
 /// What is known about a spectrum by its name.
-#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Named {
-    /// eta and k of a metal at the wavelengths of red, green and blue.
-    Metal { eta: Rgb, k: Rgb },
-    /// Index of refraction at the sodium line.
-    Glass(f64),
-    /// Light of a black body of this temperature in kelvin, or near enough.
-    Illuminant(f64),
+    /// Values: an index of refraction. Of a glass there is one, that at the sodium line.
+    Spectrum(Spectrum),
+    /// Light of this chromaticity.
+    Light([f64; 2]),
 }
 
-/// A spectrum that pbrt knows by name; of metals, `metal-X-eta` and `metal-X-k` are the same.
-///
-/// Metals: Johnson and Christy, *Optical Constants of the Noble Metals*, 1972, and Rakic, *Algorithm
-/// for the determination of intrinsic optical constants of metal films*, 1995, at 650, 550 and 450 nm.
-/// Glasses: the makers' data sheets.
+/// A spectrum that pbrt knows by name.
 pub(crate) fn named(name: &str) -> Option<Named> {
-    let metal = |eta, k| Some(Named::Metal { eta, k });
-    if let Some(rest) = name.strip_prefix("metal-") {
-        let (symbol, _) = rest.rsplit_once('-')?;
-        return match symbol {
-            "Au" => metal([0.143, 0.375, 1.442], [3.983, 2.386, 1.603]),
-            "Ag" => metal([0.155, 0.117, 0.138], [4.828, 3.122, 2.147]),
-            "Al" => metal([1.657, 0.880, 0.521], [9.224, 6.270, 4.837]),
-            "Cu" => metal([0.200, 0.924, 1.102], [3.912, 2.452, 2.142]),
-            "CuZn" => metal([0.444, 0.527, 1.094], [3.695, 2.765, 1.829]),
-            "MgO" => metal([1.735, 1.740, 1.752], [0.0; 3]),
-            "TiO2" => metal([2.574, 2.649, 2.847], [0.0; 3]),
-            _ => None,
+    if let Some((symbol, which)) =
+        name.strip_prefix("metal-").and_then(|rest| rest.rsplit_once('-'))
+    {
+        let metal = METALS.iter().find(|metal| metal.symbol == symbol)?;
+        let values = match which {
+            "eta" => &metal.eta,
+            "k" => &metal.k,
+            _ => return None,
         };
+        let [from, step] = METAL_LAMBDA;
+        let point = |(i, value): (usize, &f64)| [from + step * i as f64, *value];
+        return Some(Named::Spectrum(Spectrum(values.iter().enumerate().map(point).collect())));
     }
-    let glass = |n| Some(Named::Glass(n));
-    let light = |kelvin| Some(Named::Illuminant(kelvin));
-    match name {
-        "glass-BK7" => glass(1.5167),
-        "glass-BAF10" => glass(1.6700),
-        "glass-FK51A" => glass(1.4866),
-        "glass-LASF9" => glass(1.8503),
-        "glass-F5" | "glass-SF5" => glass(1.6727),
-        "glass-F10" | "glass-SF10" => glass(1.7283),
-        "glass-F11" | "glass-SF11" => glass(1.7847),
-        "stdillum-A" => light(2856.0),
-        "stdillum-D50" => light(5003.0),
-        "stdillum-D65" => light(6504.0),
-        "stdillum-F1" => light(6430.0),
-        "stdillum-F2" => light(4230.0),
-        "stdillum-F3" => light(3450.0),
-        "stdillum-F4" => light(2940.0),
-        "stdillum-F5" => light(6350.0),
-        "stdillum-F6" => light(4150.0),
-        "stdillum-F7" => light(6500.0),
-        "stdillum-F8" => light(5000.0),
-        "stdillum-F9" => light(4150.0),
-        "stdillum-F10" => light(5000.0),
-        "stdillum-F11" => light(4000.0),
-        "stdillum-F12" => light(3000.0),
-        _ => None,
+    // pbrt knows some glasses by two names.
+    let short = name.replace("glass-SF", "glass-F");
+    if let Some((_, n)) = GLASSES.iter().find(|(glass, _)| *glass == short) {
+        return Some(Named::Spectrum(Spectrum(vec![[589.3, *n]])));
     }
+    ILLUMINANTS.iter().find(|(light, _)| *light == name).map(|(_, xy)| Named::Light(*xy))
+}
+
+/// The names that [`named`] knows, for suggestions.
+pub(crate) fn names() -> impl Iterator<Item = &'static str> {
+    const METAL_NAMES: [&str; 14] = [
+        "metal-Ag-eta",
+        "metal-Ag-k",
+        "metal-Al-eta",
+        "metal-Al-k",
+        "metal-Au-eta",
+        "metal-Au-k",
+        "metal-Cu-eta",
+        "metal-Cu-k",
+        "metal-CuZn-eta",
+        "metal-CuZn-k",
+        "metal-MgO-eta",
+        "metal-MgO-k",
+        "metal-TiO2-eta",
+        "metal-TiO2-k",
+    ];
+    let glasses = GLASSES.iter().map(|(name, _)| *name);
+    let lights = ILLUMINANTS.iter().map(|(name, _)| *name);
+    METAL_NAMES.into_iter().chain(glasses).chain(lights)
 }
 
 #[cfg(test)]

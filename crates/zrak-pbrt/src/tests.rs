@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use proptest::prelude::*;
 use zrak_scene::desc::{
-    BackgroundDesc, ColorDesc, ConductorDesc, LightDesc, LightSides, MaterialDesc, MeshDesc,
-    ObjectDesc, ProjectionDesc, ScalarDesc, TextureDesc,
+    BackgroundDesc, ColorDesc, ConductorDesc, CurveForm, LightDesc, LightSides, MaterialDesc,
+    MeshDesc, ObjectDesc, ProjectionDesc, ScalarDesc, TextureDesc,
 };
 use zrak_scene::validate::validate;
 
@@ -111,14 +111,6 @@ fn what_files_grow_to_counts_towards_the_limit() {
             1,
             "too many",
         ),
-        (
-            format!(
-                "Shape \"bilinearmesh\" {square} \"integer indices\" [{}]",
-                "0 1 2 3 ".repeat(200)
-            ),
-            1,
-            "200 patches",
-        ),
     ] {
         let text = format!("{HEAD}{}", world.repeat(n_times)).into_bytes();
         let path = Path::new("scene.pbrt");
@@ -178,8 +170,9 @@ fn attributes_are_forgotten_and_transforms_pile_up() {
     else {
         panic!("{:?}", desc.objects)
     };
-    assert_eq!((*radius, none.len(), default.as_str()), (2.0, 0, "default"));
-    let zrak_scene::desc::TransformStep::Matrix(m) = transform[0] else { panic!() };
+    // The first step turns the texture.
+    assert_eq!((*radius, none.len(), default.as_str()), (2.0, 1, "default"));
+    let zrak_scene::desc::TransformStep::Matrix(m) = transform[1] else { panic!() };
     assert_eq!(m, [[2.0, 0.0, 0.0, 1.0], [0.0, 2.0, 0.0, 2.0], [0.0, 0.0, 2.0, 3.0]]);
     let color = ColorDesc::Solid([0.1, 0.2, 0.3]);
     assert_eq!(desc.materials[material], MaterialDesc::Lambertian { color });
@@ -320,8 +313,129 @@ fn files_include_files_and_meshes() {
     );
     let ObjectDesc::Sphere { transform, .. } = &desc.objects[2] else { panic!() };
     // What an import changes is forgotten, what an include changes is not.
-    let zrak_scene::desc::TransformStep::Matrix(m) = transform[0] else { panic!() };
+    let zrak_scene::desc::TransformStep::Matrix(m) = transform[1] else { panic!() };
     assert_eq!(m[2][3], 1.0);
+}
+
+/// The point of a curve of Bezier segments at `u` of a segment.
+fn on_curve(points: &[[f64; 3]], segment: usize, u: f64) -> [f64; 3] {
+    let w = [(1.0 - u).powi(3), 3.0 * u * (1.0 - u).powi(2), 3.0 * u * u * (1.0 - u), u.powi(3)];
+    [0, 1, 2].map(|i| (0..4).map(|k| w[k] * points[3 * segment + k][i]).sum())
+}
+
+fn curve(parameters: &str) -> ObjectDesc {
+    read(&format!("Shape \"curve\" {parameters}\n")).desc.objects.remove(0)
+}
+
+#[test]
+fn curves_of_every_basis_are_the_same_curves_in_bezier_segments() {
+    let p = [[0.0, 0.0, 0.0], [1.0, 2.0, 0.5], [3.0, 2.0, -1.0], [4.0, 0.0, 1.0], [6.0, 1.0, 1.0]];
+    let text = |n: usize| -> String {
+        p[..n].iter().flatten().map(|x| format!("{x} ")).collect::<String>()
+    };
+    let sum = |range: std::ops::Range<usize>, weights: &[f64]| {
+        [0, 1, 2].map(|i| p[range.clone()].iter().zip(weights).map(|(p, w)| p[i] * w).sum::<f64>())
+    };
+    // Basis, degree, points, segments, and the blending weights of a segment.
+    type Weights = fn(f64) -> Vec<f64>;
+    let cases: [(&str, usize, usize, usize, Weights); 4] = [
+        ("bezier", 3, 4, 1, |u| {
+            let v = 1.0 - u;
+            vec![v * v * v, 3.0 * u * v * v, 3.0 * u * u * v, u * u * u]
+        }),
+        ("bezier", 2, 5, 2, |u| vec![(1.0 - u) * (1.0 - u), 2.0 * u * (1.0 - u), u * u]),
+        ("bspline", 3, 5, 2, |u| {
+            let [u2, u3] = [u * u, u * u * u];
+            vec![
+                (1.0 - 3.0 * u + 3.0 * u2 - u3) / 6.0,
+                (3.0 * u3 - 6.0 * u2 + 4.0) / 6.0,
+                (-3.0 * u3 + 3.0 * u2 + 3.0 * u + 1.0) / 6.0,
+                u3 / 6.0,
+            ]
+        }),
+        ("bspline", 2, 5, 3, |u| {
+            vec![0.5 * (1.0 - u) * (1.0 - u), 0.5 + u * (1.0 - u), 0.5 * u * u]
+        }),
+    ];
+    for (basis, degree, n, n_segments, weights) in cases {
+        let object = curve(&format!(
+            "\"string basis\" \"{basis}\" \"integer degree\" {degree} \"point3 P\" [{}]",
+            text(n)
+        ));
+        let ObjectDesc::Curve { points, widths, form, .. } = object else { panic!() };
+        assert_eq!((points.len(), widths, form), (3 * n_segments + 1, [1.0; 2], CurveForm::Flat));
+        for segment in 0..n_segments {
+            let first = if basis == "bezier" { segment * degree } else { segment };
+            for u in [0.0, 0.2, 0.7, 1.0] {
+                let exact = sum(first..first + degree + 1, &weights(u));
+                let there = on_curve(&points, segment, u);
+                let off = (0..3).map(|i| (exact[i] - there[i]).abs()).fold(0.0, f64::max);
+                assert!(off < 1e-12, "{basis} {degree}, {segment} {u}: {there:?}, not {exact:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn curves_have_forms_widths_and_normals() {
+    let p = "\"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0]";
+    let ObjectDesc::Curve { widths, form, normals, .. } = curve(&format!(
+        "{p} \"string type\" \"ribbon\" \"normal N\" [0 0 1 0 1 0] \"float width\" 0.5 \
+         \"float width1\" 0.25 \"integer splitdepth\" 2"
+    )) else {
+        panic!()
+    };
+    assert_eq!((widths, form), ([0.5, 0.25], CurveForm::Ribbon));
+    assert_eq!(normals, [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]);
+    // Nothing to see is not an error.
+    for nothing in
+        ["\"point3 P\" [1 1 1 1 1 1 1 1 1 1 1 1]".to_owned(), format!("{p} \"float width\" 0")]
+    {
+        let imported = read(&format!("Shape \"curve\" {nothing}\n{TRIANGLE}"));
+        assert_eq!((imported.desc.objects.len(), imported.warnings.len()), (1, 1));
+    }
+    let shape = |text: &str| format!("{HEAD}Shape \"curve\" {text}\n");
+    for (text, words) in [
+        (format!("{p} \"string type\" \"round\""), "unknown type"),
+        (format!("{p} \"string basis\" \"hermite\""), "unknown basis"),
+        (format!("{p} \"integer degree\" 4"), "degree 2 or 3"),
+        (format!("{p} \"integer degree\" 2"), "control points"),
+        (format!("{p} \"string type\" \"ribbon\""), "2 normals"),
+        (format!("{p} \"string type\" \"ribbon\" \"normal N\" [0 0 1 0 0 0]"), "zero"),
+        (format!("{p} \"float width\" -1"), "negative"),
+        ("\"string basis\" \"bspline\" \"point3 P\" [0 0 0 1 0 0]".to_owned(), "at least 4"),
+        (String::new(), "needs control points"),
+    ] {
+        refused(&shape(&text), words);
+    }
+}
+
+#[test]
+fn parts_of_spheres_and_patches_are_read_as_they_are() {
+    let imported = read(
+        "Shape \"sphere\" \"float radius\" 2 \"float zmin\" 1 \"float zmax\" -9 \"float phimax\" 90\n\
+         Shape \"sphere\" \"float zmin\" 1 \"float zmax\" 1\n\
+         Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 1 2 2 2 3 3 5] \
+         \"integer indices\" [0 1 2 3 1 3 4 5]\n",
+    );
+    assert_eq!(imported.warnings.len(), 1, "{:?}", imported.warnings);
+    let ObjectDesc::Sphere { radius, z_min, z_max, phi_max_deg, .. } = imported.desc.objects[0]
+    else {
+        panic!()
+    };
+    assert_eq!((radius, z_min, z_max, phi_max_deg), (2.0, None, Some(1.0), Some(90.0)));
+    let ObjectDesc::Mesh { mesh, .. } = &imported.desc.objects[1] else { panic!() };
+    let MeshDesc::Patches { positions, patches, .. } = &imported.desc.meshes[mesh] else {
+        panic!()
+    };
+    assert_eq!((positions.len(), patches), (6, &vec![[0, 1, 2, 3], [1, 3, 4, 5]]));
+    refused(&format!("{HEAD}Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0]\n"), "indices");
+    refused(
+        &format!(
+            "{HEAD}Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0] \"integer indices\" [0 1 2 3]\n"
+        ),
+        "four indices",
+    );
 }
 
 #[test]
@@ -363,6 +477,21 @@ fn what_is_wrong_is_shown_at_its_place() {
             "no index",
         ),
         (at("Shape \"trianglemesh\" \"point3 P\" [0 0 1e39 1 0 0 0 1 0]"), "not finite"),
+        (at("Shape \"trianglemesh\" \"point3 P\" [] \"integer indices\" []"), "no triangles"),
+        (at("Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 2 0 0]"), "no triangles"),
+        (at("Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 0]"), "no multiple of 3"),
+        (at("Shape \"trianglemesh\" \"point3 P\" [nan 0 0 1 0 0 0 1 0]"), "not a number"),
+        (
+            at(
+                "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 1 0 0 1]",
+            ),
+            "3 vertices but 2 normals",
+        ),
+        (
+            at("Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1]"),
+            "no multiple of 3",
+        ),
+        (at("ObjectBegin \"a\" ObjectInstance \"a\" ObjectEnd"), "ObjectInstance"),
         (at("Shape \"plymesh\" \"string filename\" \"none.ply\""), "cannot read"),
         (at("Shape \"plymesh\" \"string filename\" \"../a.ply\""), "outside of the scene's folder"),
         (at("Include \"/etc/passwd\""), "outside of the scene's folder"),
@@ -401,6 +530,15 @@ fn limits_hold() {
     assert!(error.contains("larger than the limit"), "{error}");
     let error = import(Path::new("none.pbrt"), &ImportOptions::default()).unwrap_err().to_string();
     assert!(error.contains("there is no such scene file"), "{error}");
+}
+
+#[test]
+fn files_that_include_each_other_are_refused() {
+    let files = [("a.pbrt", "Include \"b.pbrt\""), ("b.pbrt", "Import \"./a.pbrt\"")];
+    let files = files.map(|(name, text)| (PathBuf::from(name), text.as_bytes().to_vec()));
+    let options = ImportOptions::default();
+    let error = import_from_memory(Path::new("a.pbrt"), files.into(), &options).unwrap_err();
+    assert!(error.to_string().contains("includes itself"), "{error}");
 }
 
 #[test]

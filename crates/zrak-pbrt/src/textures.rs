@@ -1,13 +1,32 @@
 //! Textures.
 
+use zrak_image::Texels;
 use zrak_scene::desc::{
     ColorDesc, FractalPattern, ImageChannel, ImageEncoding, ImageFilter, MappingDesc, NoisePattern,
-    ScalarDesc, TextureDesc, WrapMode,
+    ScalarDesc, TextureDesc, TransformStep, WrapMode,
 };
 
 use crate::error::{Fault, Result, Span};
 use crate::params::Params;
+use crate::references::What;
 use crate::state::{Importer, steps};
+
+/// The types of textures.
+const KINDS: [&str; 13] = [
+    "constant",
+    "scale",
+    "mix",
+    "directionmix",
+    "bilerp",
+    "checkerboard",
+    "imagemap",
+    "dots",
+    "fbm",
+    "wrinkled",
+    "windy",
+    "marble",
+    "ptex",
+];
 
 /// Name of a texture in the description: numbers and colours have names of their own.
 fn name_of(name: &str, is_float: bool) -> String {
@@ -15,20 +34,15 @@ fn name_of(name: &str, is_float: bool) -> String {
 }
 
 impl Importer {
-    /// Name in the description of a texture that is asked for.
-    pub(crate) fn texture_name(&self, name: &str, is_float: bool, at: &Span) -> Result<String> {
-        let key = name_of(name, is_float);
-        if self.desc.textures.contains_key(&key) {
-            return Ok(key);
+    /// Name in the description of a texture that is asked for: an earlier one, if for a texture.
+    pub(crate) fn texture_name(&mut self, name: &str, is_float: bool, at: &Span) -> Result<String> {
+        let what = if is_float { What::FloatTexture } else { What::SpectrumTexture };
+        if self.in_texture {
+            self.must_exist(what, name, at)?;
+        } else {
+            self.refer(what, name, at);
         }
-        let what = if is_float { "float" } else { "spectrum" };
-        let fault = Fault::new(at, format!("there is no {what} texture \"{name}\""));
-        let prefix = name_of("", is_float);
-        let names = self.desc.textures.keys().filter_map(|key| key.strip_prefix(&prefix));
-        Err(match zrak_scene::suggest::closest(name, names) {
-            Some(near) => fault.help(format!("did you mean \"{near}\"?")),
-            None => fault.help("Texture makes one; it must come first"),
-        })
+        Ok(name_of(name, is_float))
     }
 
     /// A colour or a number, by what the texture is made of.
@@ -46,13 +60,10 @@ impl Importer {
                 None => ColorDesc::Solid([default; 3]),
             });
         }
-        if let Some(texture) = params.texture(name)? {
-            return Ok(ColorDesc::Texture(self.texture_name(texture, false, &params.span)?));
+        match params.float(name)? {
+            Some(x) => Ok(ColorDesc::Solid([x; 3])),
+            None => self.color(params, name, [default; 3]),
         }
-        if let Some(x) = params.float(name)? {
-            return Ok(ColorDesc::Solid([x; 3]));
-        }
-        Ok(ColorDesc::Solid(self.share_color(params, name)?.unwrap_or([default; 3])))
     }
 
     fn mapping(&mut self, params: &Params, at: &Span) -> Result<MappingDesc> {
@@ -90,8 +101,8 @@ impl Importer {
                 MappingDesc::Planar { matrix: [row(v1, deltas[0]), row(v2, deltas[1])] }
             }
             other => {
-                let fault = Fault::new(at, format!("unknown mapping \"{other}\""));
-                return Err(fault.help("there are uv, spherical, cylindrical and planar"));
+                let all = ["uv", "spherical", "cylindrical", "planar"];
+                return Err(Fault::unknown(&params.span_of("mapping"), "mapping", other, &all));
             }
         })
     }
@@ -116,12 +127,18 @@ impl Importer {
                     Some(ScalarDesc::Value(x)) => solid(x),
                     None => solid(1.0),
                 };
-                TextureDesc::Multiply { a: self.input(params, "tex", is_float, 1.0)?, b: scale }
+                // What is scaled may be more than 1.
+                let solid = if is_float { None } else { self.coefficients(params, "tex")? };
+                let a = match solid {
+                    Some(color) => ColorDesc::Solid(color),
+                    None => self.input(params, "tex", is_float, 1.0)?,
+                };
+                TextureDesc::Multiply { a, b: scale }
             }
             "mix" => TextureDesc::Mix {
                 a: self.input(params, "tex1", is_float, 0.0)?,
                 b: self.input(params, "tex2", is_float, 1.0)?,
-                amount: self.scalar(params, "amount")?.unwrap_or(ScalarDesc::Value(0.5)),
+                amount: self.part(params, "amount")?.unwrap_or(ScalarDesc::Value(0.5)),
             },
             "directionmix" => {
                 self.warn(at, "texture \"directionmix\" is an even mix: no direction is looked at");
@@ -135,13 +152,18 @@ impl Importer {
             "checkerboard" => {
                 let even = self.input(params, "tex1", is_float, 1.0)?;
                 let odd = self.input(params, "tex2", is_float, 0.0)?;
-                if params.integer("dimension")? == Some(3) {
-                    let key = self.fresh("checker");
-                    let checker = TextureDesc::Checker { scale: 1.0, even, odd };
-                    self.desc.textures.insert(key.clone(), checker);
-                    self.placed(ColorDesc::Texture(key), at)?
-                } else {
-                    TextureDesc::UvChecker { even, odd, mapping: self.mapping(params, at)? }
+                match params.integer("dimension")?.unwrap_or(2) {
+                    2 => TextureDesc::UvChecker { even, odd, mapping: self.mapping(params, at)? },
+                    3 => {
+                        let key = self.fresh("checker");
+                        let checker = TextureDesc::Checker { scale: 1.0, even, odd };
+                        self.desc.textures.insert(key.clone(), checker);
+                        self.placed(ColorDesc::Texture(key), at)?
+                    }
+                    n => {
+                        let message = format!("a checkerboard has 2 or 3 dimensions, not {n}");
+                        return Err(Fault::new(&params.span_of("dimension"), message));
+                    }
                 }
             }
             "dots" => TextureDesc::Dots {
@@ -153,11 +175,12 @@ impl Importer {
                 let mut corners = [[0.0; 3]; 4];
                 for (i, corner) in corners.iter_mut().enumerate() {
                     let key = ["v00", "v01", "v10", "v11"][i];
-                    if let ColorDesc::Solid(c) =
-                        self.input(params, key, is_float, [0.0, 1.0, 0.0, 1.0][i])?
-                    {
-                        *corner = c;
-                    }
+                    let default = [0.0, 1.0, 0.0, 1.0][i];
+                    *corner = if is_float {
+                        [params.float(key)?.unwrap_or(default); 3]
+                    } else {
+                        self.share(params, key)?.unwrap_or([default; 3])
+                    };
                 }
                 TextureDesc::Bilerp { corners, mapping: self.mapping(params, at)? }
             }
@@ -181,37 +204,40 @@ impl Importer {
                 self.desc.textures.insert(key.clone(), fractal);
                 self.placed(ColorDesc::Texture(key), at)?
             }
-            "marble" => {
-                // Between two of the greys that pbrt's stone has.
-                let octaves = params.integer("octaves")?.unwrap_or(8).clamp(1, 16) as u32;
-                let marble = TextureDesc::Noise {
-                    scale: params.float("scale")?.unwrap_or(1.0).max(1e-9),
-                    pattern: NoisePattern::Marble,
-                    octaves,
-                    seed: 0,
-                    low: [0.2, 0.2, 0.33],
-                    high: [0.58, 0.58, 0.6],
-                };
-                params.ignore(&["variation", "roughness"]);
-                let key = self.fresh(kind);
-                self.desc.textures.insert(key.clone(), marble);
-                self.placed(ColorDesc::Texture(key), at)?
-            }
+            "marble" => self.marble(params, at)?,
             "ptex" => {
                 self.warn(at, "texture \"ptex\" is not read: it is mid grey");
                 params.ignore(&["filename", "encoding", "scale"]);
                 TextureDesc::Solid { color: [0.5; 3] }
             }
             _ => {
-                let fault = Fault::new(at, format!("unknown texture \"{kind}\""));
-                return Err(fault.help(
-                    "there are constant, scale, mix, directionmix, checkerboard, imagemap, dots, \
-                     bilerp, fbm, wrinkled, windy, marble and ptex",
-                ));
+                return Err(Fault::unknown(at, "texture", kind, &KINDS));
             }
         };
         self.desc.textures.insert(name_of(name, is_float), texture);
         Ok(())
+    }
+
+    /// Veins, with the colours in the middle and at the rim of pbrt's and along its axis.
+    fn marble(&mut self, params: &Params, at: &Span) -> Result<TextureDesc> {
+        self.warn(at, "texture \"marble\" has veins of two colours, of another shape than pbrt's");
+        let octaves = params.integer("octaves")?.unwrap_or(8).clamp(1, 16) as u32;
+        let marble = TextureDesc::Noise {
+            scale: params.float("scale")?.unwrap_or(1.0).abs().max(1e-9),
+            pattern: NoisePattern::Marble,
+            octaves,
+            seed: 0,
+            low: [0.6, 0.6, 0.65],
+            high: [0.87, 0.87, 0.9],
+        };
+        params.ignore(&["variation", "roughness"]);
+        let key = self.fresh("marble");
+        self.desc.textures.insert(key.clone(), marble);
+        // Theirs run along y, ours along z.
+        let map = self.state.ctm.start;
+        let mut transform = vec![TransformStep::RotateXDeg(-90.0)];
+        transform.extend(steps(&map));
+        Ok(TextureDesc::Placed { texture: ColorDesc::Texture(key), transform })
     }
 
     /// A texture of space, moved to where the map is.
@@ -227,58 +253,115 @@ impl Importer {
         let Some(path) = params.string("filename")?.map(str::to_owned) else {
             return Err(Fault::new(at, "an imagemap needs a \"string filename\""));
         };
-        self.sources.resolve(&path, at)?;
-        let wrap = match params.string("wrap")?.unwrap_or("repeat") {
+        let path = self.picture(&path, &params.span_of("filename"))?;
+        let wrap = params.string("wrap")?.unwrap_or("repeat").to_owned();
+        let wrap = match wrap.as_str() {
             "repeat" => WrapMode::Repeat,
             "clamp" => WrapMode::Clamp,
             "black" => WrapMode::Black,
-            "octahedralsphere" => WrapMode::Clamp,
+            "octahedralsphere" => {
+                let span = params.span_of("wrap");
+                self.warn(&span, "wrap \"octahedralsphere\" is taken as \"clamp\"");
+                WrapMode::Clamp
+            }
             other => {
-                let fault = Fault::new(at, format!("unknown wrap \"{other}\""));
-                return Err(fault.help("there are repeat, clamp and black"));
+                let all = ["repeat", "clamp", "black", "octahedralsphere"];
+                return Err(Fault::unknown(&params.span_of("wrap"), "wrap", other, &all));
             }
         };
         let encoding = match params.string("encoding")?.map(str::to_owned) {
-            None => ImageEncoding::Auto,
+            // 8-bit files are sRGB codes for numbers, too.
+            None => ImageEncoding::Srgb,
             Some(name) if name == "sRGB" => ImageEncoding::Srgb,
             Some(name) if name == "linear" => ImageEncoding::Linear,
-            Some(name) => {
-                self.warn(at, format!("encoding \"{name}\" is taken as sRGB"));
+            Some(name) if name.starts_with("gamma ") => {
+                let span = params.span_of("encoding");
+                self.warn(&span, format!("encoding \"{name}\" is taken as sRGB"));
                 ImageEncoding::Srgb
             }
-        };
-        // Numbers of 8-bit files are sRGB codes in pbrt, too.
-        let encoding = match encoding {
-            ImageEncoding::Auto if is_float => ImageEncoding::Srgb,
-            other => other,
+            Some(name) => {
+                let span = params.span_of("encoding");
+                let all = ["sRGB", "linear", "gamma 2.2"];
+                return Err(Fault::unknown(&span, "encoding", &name, &all));
+            }
         };
         let filter = match params.string("filter")?.unwrap_or("bilinear") {
             "point" => ImageFilter::Nearest,
             "bilinear" => ImageFilter::Bilinear,
-            "trilinear" => ImageFilter::Trilinear,
-            "EWA" | "ewa" => ImageFilter::Trilinear,
+            "trilinear" | "EWA" | "ewa" => ImageFilter::Trilinear,
             other => {
-                let fault = Fault::new(at, format!("unknown filter \"{other}\""));
-                return Err(fault.help("there are point, bilinear, trilinear and ewa"));
+                let all = ["point", "bilinear", "trilinear", "ewa"];
+                return Err(Fault::unknown(&params.span_of("filter"), "filter", other, &all));
             }
         };
         params.ignore(&["maxanisotropy"]);
-        Ok(TextureDesc::Image {
+        let scale = params.float("scale")?.unwrap_or(1.0);
+        let invert = params.bool("invert")?.unwrap_or(false);
+        // A number is the alpha of a picture that has one.
+        let has_alpha = is_float && self.has_alpha(&path);
+        let image = TextureDesc::Image {
             path,
             filter,
             wrap_u: wrap,
             wrap_v: wrap,
             encoding,
-            channel: ImageChannel::Color,
-            scale: params.float("scale")?.unwrap_or(1.0),
-            invert: params.bool("invert")?.unwrap_or(false),
+            channel: if has_alpha { ImageChannel::A } else { ImageChannel::Color },
+            scale: if invert { 1.0 } else { scale },
+            invert,
             mapping: self.mapping(params, at)?,
-        })
+        };
+        if !invert || scale == 1.0 {
+            return Ok(image);
+        }
+        // pbrt inverts what has been scaled: 1 - s x = (1 - s) 1 + s (1 - x).
+        if !(0.0..=1.0).contains(&scale) {
+            let message =
+                format!("a picture times {scale} cannot be inverted; it is taken times 1");
+            self.warn(&params.span_of("scale"), message);
+            return Ok(image);
+        }
+        let key = self.fresh("inverted");
+        self.desc.textures.insert(key.clone(), image);
+        let (a, b) = (ColorDesc::Solid([1.0; 3]), ColorDesc::Texture(key));
+        Ok(TextureDesc::Mix { a, b, amount: ScalarDesc::Value(scale) })
+    }
+
+    /// Path of a picture, with a warning if there is none: whether that is an error, the caller says.
+    pub(crate) fn picture(&mut self, name: &str, at: &Span) -> Result<String> {
+        let path = self.sources.resolve(name, at)?;
+        if name.is_empty() {
+            return Err(Fault::new(at, "the name of the picture is empty"));
+        }
+        if !self.sources.is_file(&path) {
+            self.warn(at, format!("there is no picture {}", path.display()));
+        }
+        Ok(name.to_owned())
+    }
+
+    /// Whether a file is a PNG of which some texel is not opaque.
+    fn has_alpha(&self, name: &str) -> bool {
+        if !self.sources.has_pictures() {
+            return false;
+        }
+        let path = self.sources.base().join(name);
+        let mut head = [0_u8; 26];
+        let is_read = std::fs::File::open(&path)
+            .and_then(|mut file| std::io::Read::read_exact(&mut file, &mut head))
+            .is_ok();
+        // The colour type in a PNG header: RGB with alpha.
+        if !is_read || !head.starts_with(b"\x89PNG") || head[25] != 6 {
+            return false;
+        }
+        match zrak_image::read_texture(&path, &zrak_image::Limits::default()).map(|i| i.texels) {
+            Ok(Texels::Srgb8(texels)) => texels.iter().any(|t| t[3] != u8::MAX),
+            Ok(Texels::Srgb16(texels)) => texels.iter().any(|t| t[3] != u16::MAX),
+            _ => false,
+        }
     }
 
     /// A texture of the normals in a file.
     pub(crate) fn normal_map(&mut self, path: &str, at: &Span) -> Result<String> {
-        self.sources.resolve(path, at)?;
+        let path = self.picture(path, at)?;
         let key = self.fresh("normals");
         let mut texture = TextureDesc::image(path, ImageFilter::Bilinear);
         if let TextureDesc::Image { encoding, wrap_v, .. } = &mut texture {

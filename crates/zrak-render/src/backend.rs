@@ -33,6 +33,19 @@ pub struct Times {
     pub download_s: f64,
 }
 
+impl Times {
+    /// Sum of both.
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        Self {
+            compile_s: self.compile_s + other.compile_s,
+            upload_s: self.upload_s + other.upload_s,
+            render_s: self.render_s + other.render_s,
+            download_s: self.download_s + other.download_s,
+        }
+    }
+}
+
 /// How a running render is watched and stopped, from any thread.
 #[derive(Debug, Default)]
 pub struct Control {
@@ -85,4 +98,9 @@ pub trait Backend {
 
     /// Where the time went so far.
     fn times(&self) -> Times;
+
+    /// Parts of it that failed and were done without since, in their own words.
+    fn failures(&self) -> Vec<String> {
+        Vec::new()
+    }
 }

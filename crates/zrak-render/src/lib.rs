@@ -5,6 +5,7 @@ mod error;
 mod film;
 mod progressive;
 mod region;
+mod team;
 
 #[cfg(test)]
 mod tests;
@@ -14,3 +15,4 @@ pub use error::{BackendError, BackendErrorKind};
 pub use film::Film;
 pub use progressive::{Interrupted, Rendered, render};
 pub use region::{Region, SampleRange};
+pub use team::Team;

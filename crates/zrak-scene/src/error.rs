@@ -38,6 +38,8 @@ pub enum SceneErrorKind {
     UnsupportedFormat,
     /// The scene is TOML, but it is not a scene that can be rendered.
     Invalid,
+    /// A compiled scene is not as it was written, or leads astray.
+    Damaged,
 }
 
 /// A problem and its place in the text.
@@ -93,6 +95,22 @@ impl SceneError {
             .collect();
         let origin = origin.to_owned();
         Self(Box::new(Inner { kind, diagnostics, n_problems, origin }))
+    }
+
+    /// A problem of a line of the file `origin`, by its number and its text, of which the part `span`, in
+    /// bytes, matters: for files too large to be kept as a text.
+    #[must_use]
+    pub fn line(
+        kind: SceneErrorKind,
+        origin: &str,
+        (line, text): (usize, &str),
+        span: Range<usize>,
+        message: String,
+    ) -> Self {
+        let problem = Problem { path: KeyPath::default(), message, help: None };
+        let place = Some(Place { line, ..Place::new(text, span) });
+        let diagnostics = vec![Diagnostic { problem, place }];
+        Self(Box::new(Inner { kind, diagnostics, n_problems: 1, origin: origin.to_owned() }))
     }
 
     /// What sort of error it is.

@@ -37,6 +37,14 @@ fn the_references_have_the_right_size() {
         assert_eq!([scene.camera.width, scene.camera.height], [128, 128]);
         assert_eq!((scene.objects.len(), scene.render.max_depth), (n_objects, 50), "{name}");
     }
+    // Those that `make.py` makes, each with its picture.
+    let small =
+        ["bumps", "glass", "holes", "instances", "lamps", "layers", "media", "metals", "textures"];
+    for name in small {
+        let scene = file::read(root().join(format!("scenes/reference/{name}.toml"))).unwrap().desc;
+        assert_eq!([scene.camera.width, scene.camera.height], [64, 64], "{name}");
+        assert_eq!(scene.render.max_depth, 50, "{name}");
+    }
 }
 
 /// The TOML blocks of a page.

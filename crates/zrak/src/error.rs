@@ -40,6 +40,7 @@ struct Inner {
 enum Cause {
     Message(String),
     Scene(SceneError),
+    Gltf(zrak_gltf::Error),
     Backend(BackendError),
     Image(zrak_image::Error),
 }
@@ -86,6 +87,12 @@ impl From<SceneError> for Error {
     }
 }
 
+impl From<zrak_gltf::Error> for Error {
+    fn from(error: zrak_gltf::Error) -> Self {
+        Self::from_cause(ErrorKind::Scene, Cause::Gltf(error))
+    }
+}
+
 impl From<zrak_image::Error> for Error {
     fn from(error: zrak_image::Error) -> Self {
         Self::from_cause(ErrorKind::Image, Cause::Image(error))
@@ -108,6 +115,7 @@ impl fmt::Display for Error {
         match &self.0.cause {
             Cause::Message(message) => f.write_str(message),
             Cause::Scene(error) => error.fmt(f),
+            Cause::Gltf(error) => error.fmt(f),
             Cause::Backend(error) => error.fmt(f),
             Cause::Image(error) => error.fmt(f),
         }
@@ -127,6 +135,7 @@ impl std::error::Error for Error {
         match &self.0.cause {
             Cause::Message(_) => None,
             Cause::Scene(error) => error.source(),
+            Cause::Gltf(error) => error.source(),
             Cause::Backend(error) => error.source(),
             Cause::Image(error) => error.source(),
         }

@@ -31,6 +31,7 @@
 //! backends there are, and [`core`] for what computes every sample.
 
 mod backends;
+mod convert;
 mod error;
 mod load;
 mod memory;
@@ -48,10 +49,15 @@ pub use zrak_image::{Metadata, Picture, Transfer};
 pub use zrak_render::{BackendInfo, Control, Film, Times};
 pub use zrak_scene::arena::SceneArena;
 pub use zrak_scene::desc::SceneDesc;
+pub use zrak_scene::lower::{LoadedImage, MissingTextures};
+pub use zrak_scene::progress::{LoadProgress, LoadStage};
 
-pub use backends::{BackendChoice, RenderOptions, UnknownBackend, cpu_instruction_set, n_threads};
+pub use backends::{
+    BackendChoice, Devices, RenderOptions, UnknownBackend, cpu_instruction_set, n_threads,
+};
+pub use convert::{Converted, SceneFormat, convert, to_toml};
 pub use error::{Error, ErrorKind};
-pub use load::{LoadOptions, Scene, load_scene, load_scene_with};
+pub use load::{GltfOptions, LoadOptions, LoweredScene, Scene, load_scene, load_scene_with};
 pub use render::{RenderOutput, render};
 
 /// The version of zrak.

@@ -29,7 +29,7 @@ pub struct RenderOutput {
     pub first_pass_s: Option<f64>,
     /// From the call to the end, in seconds.
     pub total_s: f64,
-    /// Why the GPU gave up on the way, in the driver's words, if the processor went on for it.
+    /// Why the GPU gave up on the way, in the driver's words, if others went on for it.
     pub gpu_failure: Option<String>,
 }
 
@@ -74,7 +74,7 @@ pub fn render(
 
 /// [`render`] on backends that come from anywhere.
 fn render_with(
-    open: impl Fn(Kind) -> Result<Box<dyn Backend>, BackendError>,
+    open: impl Fn(Kind) -> Result<Box<dyn Backend + Send>, BackendError>,
     region: Region,
     n_samples: u32,
     choice: BackendChoice,
@@ -85,6 +85,7 @@ fn render_with(
     let first = match choice {
         BackendChoice::Cpu => open(Kind::Cpu)?,
         BackendChoice::Cuda => open(Kind::Cuda)?,
+        BackendChoice::Hybrid => open(Kind::Hybrid)?,
         BackendChoice::Auto => match open(Kind::Cuda) {
             // Asking for what no device can do is a mistake, not a missing GPU.
             Err(error) if error.kind() == BackendErrorKind::InvalidOption => {
@@ -133,7 +134,7 @@ fn empty(region: Region) -> Rendered {
 
 /// A backend whose passes are watched.
 struct Run {
-    backend: Box<dyn Backend>,
+    backend: Box<dyn Backend + Send>,
     start: Instant,
     first_pass_s: Option<f64>,
     /// Times of a backend that failed before.
@@ -142,7 +143,7 @@ struct Run {
 }
 
 impl Run {
-    fn new(backend: Box<dyn Backend>, start: Instant) -> Self {
+    fn new(backend: Box<dyn Backend + Send>, start: Instant) -> Self {
         Self { backend, start, first_pass_s: None, before: Times::default(), gpu_failure: None }
     }
 
@@ -170,7 +171,10 @@ impl Run {
             times: self.times(),
             first_pass_s: self.first_pass_s,
             total_s: self.start.elapsed().as_secs_f64(),
-            gpu_failure: self.gpu_failure.clone(),
+            gpu_failure: self.gpu_failure.clone().or_else(|| {
+                let failures = self.backend.failures();
+                (!failures.is_empty()).then(|| failures.join("; "))
+            }),
         }
     }
 }
@@ -194,13 +198,7 @@ impl Backend for Run {
     }
 
     fn times(&self) -> Times {
-        let times = self.backend.times();
-        Times {
-            compile_s: self.before.compile_s + times.compile_s,
-            upload_s: self.before.upload_s + times.upload_s,
-            render_s: self.before.render_s + times.render_s,
-            download_s: self.before.download_s + times.download_s,
-        }
+        self.before.plus(&self.backend.times())
     }
 }
 

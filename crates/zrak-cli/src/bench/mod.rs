@@ -107,7 +107,12 @@ impl BenchBackend {
         match self {
             Self::Cpu1 => RenderOptions { threads: Some(1), ..cpu },
             Self::Cpu => cpu,
-            Self::Cuda => RenderOptions { backend: BackendChoice::Cuda, device, block, ..cpu },
+            Self::Cuda => RenderOptions {
+                backend: BackendChoice::Cuda,
+                devices: zrak::Devices::one(device),
+                block,
+                ..cpu
+            },
         }
     }
 }

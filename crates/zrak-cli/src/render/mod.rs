@@ -6,11 +6,12 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
-use zrak::{BackendChoice, ErrorKind, RenderOptions, RenderOutput, Scene, Transfer};
+use zrak::{BackendChoice, ErrorKind, LoweredScene, RenderOptions, RenderOutput, Scene, Transfer};
 
 use crate::args::BackendArgs;
 use crate::exit_codes::Exit;
 use crate::failure::Failure;
+use crate::load::LoadArgs;
 use crate::overrides::Overrides;
 use crate::progress::Progress;
 use crate::{interrupt, terminal};
@@ -21,6 +22,8 @@ Examples:
   zrak render final                               to final.png, on the GPU if there is one
   zrak render final --width 1600 --spp 1000       larger (the aspect ratio stays) and cleaner
   zrak render killeroo.pbrt -o killeroo.exr       a scene for pbrt-v4
+  zrak render crown.zscene                        a scene that `zrak compile` made
+  zrak render model.glb --camera Close            a glTF file, seen by one of its cameras
   zrak render my.toml -o my.png -o my.exr         one for the screen, one for further work
   zrak render cover --backend cpu --threads 1     on one thread: the same picture
   zrak render cover --json --quiet | jq .times    what it took, for a script
@@ -30,7 +33,7 @@ Ctrl-C stops at once and writes the samples per pixel that are finished; a secon
 /// Options of `zrak render`.
 #[derive(Args, Debug)]
 pub(crate) struct RenderArgs {
-    /// Built-in scene (see `zrak scenes`) or path of a .toml or .pbrt file
+    /// Built-in scene (see `zrak scenes`) or path of a .toml, .pbrt, .gltf, .glb, .obj or .zscene file
     scene: PathBuf,
     /// Picture to write, as .png, .jpg, .hdr, .exr or .pfm; may be repeated [default: the scene's name, as .png]
     #[arg(long, short, value_name = "FILE")]
@@ -45,7 +48,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, short)]
     quiet: bool,
     #[command(flatten)]
-    load: crate::args::LoadArgs,
+    load: LoadArgs,
     #[command(flatten)]
     overrides: Overrides,
     #[command(flatten)]
@@ -64,10 +67,10 @@ enum TransferName {
 /// Renders, and ends with the exit code of what happened.
 pub(crate) fn run(args: &RenderArgs, start: Instant) -> Result<Exit, Failure> {
     let control = interrupt::install();
-    let mut scene = args.load.load(&args.scene, args.quiet)?;
-    args.overrides.apply(&mut scene.desc)?;
-    let outputs = outputs(args, &scene)?;
-    let arena = scene.lower()?;
+    let mut loaded = args.load.load(&args.scene, args.quiet)?;
+    args.overrides.apply(&mut loaded.scene.desc)?;
+    let outputs = outputs(args, &loaded.scene)?;
+    let (scene, LoweredScene { arena, .. }) = loaded.lower()?;
     let build_s = start.elapsed().as_secs_f64();
 
     let spp = scene.desc.render.samples_per_pixel;

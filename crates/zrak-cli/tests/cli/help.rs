@@ -2,8 +2,18 @@
 
 use crate::harness::Folder;
 
-const SUBCOMMANDS: [&str; 9] =
-    ["render", "scenes", "export", "devices", "compare", "selftest", "bench", "completions", "man"];
+const SUBCOMMANDS: [&str; 10] = [
+    "render",
+    "scenes",
+    "convert",
+    "info",
+    "devices",
+    "compare",
+    "selftest",
+    "bench",
+    "completions",
+    "man",
+];
 
 #[test]
 fn help_lists_subcommands_and_exit_codes() {

@@ -2,6 +2,8 @@
 
 mod bad_input;
 mod compare;
+mod compile;
+mod formats;
 mod harness;
 mod help;
 mod interrupt;

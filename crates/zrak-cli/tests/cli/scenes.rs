@@ -1,4 +1,4 @@
-//! `zrak scenes` and `zrak export`.
+//! `zrak scenes` and `zrak convert`.
 
 use crate::harness::Folder;
 

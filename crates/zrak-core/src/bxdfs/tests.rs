@@ -1,6 +1,7 @@
 //! Each BSDF: `sample` against its density, `eval` against `sample`, energy, reciprocity.
 
 mod albedo;
+mod energy;
 mod principled;
 
 use super::{

@@ -252,7 +252,7 @@ impl Path {
         if let Some(scatter) = scatter {
             self.throughput *= scatter.attenuation;
             pending = Pending {
-                goes_on: may_go_on,
+                goes_on: self.survives(scene, &sampler) && may_go_on,
                 ray: spawn(scatter.wi),
                 medium: medium_at(self.medium, scatter.wi),
             };
@@ -283,6 +283,22 @@ impl Path {
             }
         }
         self.go_on(pending)
+    }
+
+    /// Russian roulette (Arvo and Kirk, *Particle Transport and Image Synthesis*, 1990): a path goes on
+    /// with the chance q = min(1, largest channel of the throughput), and what then goes on is worth 1 / q
+    /// as much, which leaves the expectation as it is.
+    #[inline(always)]
+    fn survives(&mut self, scene: &SceneView, sampler: &Sampler) -> bool {
+        let q = self.throughput.max_channel();
+        if self.n_rays - self.n_extra < scene.globals.rr_depth || q >= 1.0 {
+            return true;
+        }
+        let goes_on = sampler.at_bounce(BounceDim::Roulette) < q;
+        if goes_on {
+            self.throughput = self.throughput * (1.0 / q);
+        }
+        goes_on
     }
 
     /// Takes the path up again after a look at a light.

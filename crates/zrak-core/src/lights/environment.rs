@@ -89,4 +89,64 @@ mod tests {
             assert!((u - x).abs() < 1e-4 && (1.0 - v - y).abs() < 1e-4, "{x} {y}: {u} {v}");
         }
     }
+
+    /// A picture whose texels say where they are, under any turn: bilinear look-ups of a smooth function of
+    /// the direction give that function.
+    #[test]
+    fn a_turned_picture_shows_what_it_should() {
+        use crate::testing::{Rng, TestScene, cross, dot, double, unit};
+        use crate::textures::{
+            CHANNEL_COLOR, FILTER_BILINEAR, ImageMap, ImageTexture, NO_MAPPING, TEXELS_LINEAR,
+            WRAP_CLAMP, WRAP_REPEAT,
+        };
+        let (width, height) = (256_u32, 128_u32);
+        let mut scene = TestScene::default();
+        for y in 0..height {
+            for x in 0..width {
+                let phi = std::f64::consts::TAU * ((f64::from(x) + 0.5) / f64::from(width) - 0.5);
+                let theta = std::f64::consts::PI * (f64::from(y) + 0.5) / f64::from(height);
+                let d = [theta.sin() * phi.sin(), theta.cos(), -theta.sin() * phi.cos()];
+                scene.texels.extend(d.map(|x| (1.0 + x) as f32).map(f32::to_bits));
+            }
+        }
+        scene.image_maps.push(ImageMap {
+            raster: ImageTexture {
+                first_word: 0,
+                width,
+                height,
+                format: TEXELS_LINEAR,
+                bilinear: 0,
+                _pad: [0; 3],
+            },
+            n_levels: 1,
+            filter: FILTER_BILINEAR,
+            wrap_u: WRAP_REPEAT,
+            wrap_v: WRAP_CLAMP,
+            channel: CHANNEL_COLOR,
+            mapping: NO_MAPPING,
+            scale: 1.0,
+            invert: 0,
+        });
+        let view = scene.view();
+        let arrays = TextureArrays::of(&view);
+        let mut rng = Rng::new(1);
+        for case in 0..100 {
+            let x = double(rng.direction());
+            let y = unit(cross(x, double(rng.direction())));
+            let z = cross(x, y).map(|c| if case % 2 == 0 { c } else { -c });
+            let rows = [x, y, z].map(crate::testing::single);
+            let tint = Color::new(0.5, 1.0, 2.0);
+            let light = Environment { tint, ..environment(rows, ENVIRONMENT_EQUIRECT) };
+            for _ in 0..500 {
+                let d = rng.direction();
+                let got = light.radiance(&arrays, d).to_array().map(f64::from);
+                let exact = [x, y, z].map(|axis| 1.0 + dot(axis, double(d)));
+                for (c, (got, exact)) in got.into_iter().zip(exact).enumerate() {
+                    let exact = exact * [0.5, 1.0, 2.0][c];
+                    // A texel is 1.4 degrees wide; beyond the outermost rows nothing changes any more.
+                    assert!((got - exact).abs() < 0.03, "{d:?}, channel {c}: {got} {exact}");
+                }
+            }
+        }
+    }
 }

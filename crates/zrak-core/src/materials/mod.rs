@@ -45,7 +45,7 @@ pub use surface::{
 
 use crate::bxdfs::{BsdfSample, Lobes, evaluate_principled, sample_principled, thin_dielectric};
 use crate::interaction::SurfaceInteraction;
-use crate::math::{Color, Vec3};
+use crate::math::{Color, Vec3, dot};
 use crate::sampler::{BounceDim, Sampler};
 use crate::scene::{MaterialKind, SceneView};
 
@@ -89,6 +89,9 @@ pub fn evaluate(
 ) -> Color {
     let i = surface.material.index();
     let has = |kind| scene.kinds.has_material(kind);
+    if leaks(scene, surface, d, wi) {
+        return Color::BLACK;
+    }
     match surface.material.kind() {
         Some(kind @ MaterialKind::Lambertian) if has(kind) => {
             scene.lambertians.get(i).evaluate(scene, surface, d, wi)
@@ -115,7 +118,7 @@ pub fn respond(
 ) -> Response {
     let i = surface.material.index();
     let has = |kind| scene.kinds.has_material(kind);
-    match surface.material.kind() {
+    let response = match surface.material.kind() {
         Some(kind @ MaterialKind::Lambertian) if has(kind) => {
             scene.lambertians.get(i).respond(scene, surface, d, sampler)
         }
@@ -137,6 +140,31 @@ pub fn respond(
         }
         // A phase function on a surface: the host refuses it.
         _ => Response::ABSORBED,
+    };
+    match response.scatter {
+        Some(scatter) if leaks(scene, surface, d, scatter.wi) => Response::ABSORBED,
+        _ => response,
+    }
+}
+
+/// Whether light from `wi` would come through a surface that is opaque: the shading normal, turned by a
+/// map or a mesh, has a part of its upper half below the surface itself.
+#[inline(always)]
+fn leaks(scene: &SceneView, surface: &SurfaceInteraction, d: Vec3, wi: Vec3) -> bool {
+    if surface.ns == surface.n || dot(surface.n, d) * dot(surface.n, wi) <= 0.0 {
+        return false;
+    }
+    match surface.material.kind() {
+        Some(
+            MaterialKind::Lambertian
+            | MaterialKind::Metal
+            | MaterialKind::Conductor
+            | MaterialKind::Layered,
+        ) => true,
+        Some(kind @ MaterialKind::Principled) if scene.kinds.has_material(kind) => {
+            scene.principleds.get(surface.material.index()).is_opaque()
+        }
+        _ => false,
     }
 }
 

@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::bxdfs::PrincipledParams;
 use crate::math::{Color, max, min};
-use crate::scene::SceneView;
+use crate::scene::{SceneView, TextureRef};
 use crate::textures::{ColorInput, ScalarInput, TextureContext};
 
 /// Flag of a surface whose two sides are those of a thin wall, without an inside.
@@ -50,7 +50,7 @@ const _: () = assert!(size_of::<Principled>() == 240);
 impl Principled {
     /// The textures of all inputs.
     #[must_use]
-    pub fn textures(&self) -> [crate::scene::TextureRef; 22] {
+    pub fn textures(&self) -> [TextureRef; 22] {
         [
             self.base_color.texture,
             self.specular_color.texture,
@@ -75,6 +75,14 @@ impl Principled {
             self.thin_film_weight.texture,
             self.thin_film_thickness.texture,
         ]
+    }
+
+    /// Whether nothing goes through, wherever it is looked at.
+    #[inline(always)]
+    pub(super) fn is_opaque(&self) -> bool {
+        let is_clear = self.transmission_weight.value > 0.0
+            || self.transmission_weight.texture != TextureRef::default();
+        !is_clear && self.flags & PRINCIPLED_THIN_WALLED == 0
     }
 
     /// The parameters at a point, brought into their ranges: textures may leave them. What belongs to a

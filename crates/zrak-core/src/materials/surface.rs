@@ -181,18 +181,24 @@ impl Surface {
     }
 
     /// Turns the shading normal by the slope of the height: Blinn, *Simulation of Wrinkled Surfaces*,
-    /// 1978, with forward differences over half the ray's footprint.
-    #[cfg_attr(target_arch = "nvptx64", inline(always))]
+    /// 1978, with central differences over half the ray's footprint. Differences to one side would move
+    /// the bumps to the other.
+    #[inline(always)]
     fn bump(&self, scene: &SceneView, surface: &mut SurfaceInteraction, at: &TextureContext) {
         let step = |footprint: f32| max(0.5 * footprint, 5e-4);
         let (du, dv) = (step(at.duv[0]), step(at.duv[1]));
-        let height = self.bump.evaluate(scene, at);
-        let shifted_u =
-            TextureContext { p: at.p + surface.dpdu * du, uv: [at.uv[0] + du, at.uv[1]], ..*at };
-        let shifted_v =
-            TextureContext { p: at.p + surface.dpdv * dv, uv: [at.uv[0], at.uv[1] + dv], ..*at };
-        let slope_u = (self.bump.evaluate(scene, &shifted_u) - height) / du;
-        let slope_v = (self.bump.evaluate(scene, &shifted_v) - height) / dv;
+        let shifted = |u: f32, v: f32| TextureContext {
+            p: at.p + surface.dpdu * u + surface.dpdv * v,
+            uv: [at.uv[0] + u, at.uv[1] + v],
+            ..*at
+        };
+        let (half_u, half_v) = (0.5 * du, 0.5 * dv);
+        let right = self.bump.evaluate(scene, &shifted(half_u, 0.0));
+        let left = self.bump.evaluate(scene, &shifted(-half_u, 0.0));
+        let above = self.bump.evaluate(scene, &shifted(0.0, half_v));
+        let below = self.bump.evaluate(scene, &shifted(0.0, -half_v));
+        let slope_u = (right - left) / du;
+        let slope_v = (above - below) / dv;
         let ns = surface.ns;
         let n = cross(surface.dpdu + ns * slope_u, surface.dpdv + ns * slope_v);
         let length = n.length();

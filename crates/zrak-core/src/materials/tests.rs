@@ -4,6 +4,7 @@ mod dielectric;
 mod diffuse;
 mod metal;
 mod principled;
+mod surface;
 
 use super::{Response, respond};
 use crate::interaction::SurfaceInteraction;

@@ -80,7 +80,8 @@ impl ConstantMedium {
                 boundary_surely_contains(scene, self.boundary, placement, p, p_error, ray.time);
             searching = !inside && t < middle;
             if searching {
-                step = 4.0 * max(step, p_error.max_component());
+                // Never zero, or a boundary smaller than the smallest numbers would keep the search here.
+                step = 4.0 * max(step, max(p_error.max_component(), f32::MIN_POSITIVE));
                 t = min(t + step, middle);
             }
         }

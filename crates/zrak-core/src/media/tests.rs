@@ -1,5 +1,7 @@
 //! Media: lengths of free flights, and where events may be.
 
+mod homogeneous;
+
 use super::{ConstantMedium, NO_PLACEMENT};
 use crate::accel::{Accel, BruteForce};
 use crate::accessor::Array;

@@ -8,6 +8,7 @@ use core::f32::consts::TAU;
 use bytemuck::{Pod, Zeroable};
 
 use super::disk::angle;
+use super::sphere::facing;
 use super::{Shape, Shutter};
 use crate::interaction::SurfaceInteraction;
 use crate::math::{Bounds, Vec3, gamma, sqrt, vec3};
@@ -41,17 +42,10 @@ impl Cylinder {
             && p.z <= self.z_max
             && (self.phi_max >= TAU || angle(p.y, p.x) <= self.phi_max)
     }
-}
 
-impl Shape for Cylinder {
-    fn bounds(&self, _: Shutter) -> Bounds {
-        let r = self.radius;
-        let (lo, hi) = (vec3(-r, -r, self.z_min), vec3(r, r, self.z_max));
-        Bounds { lo, hi }.padded(r * 1e-6)
-    }
-
+    /// Where a ray meets it, and whether from outside.
     #[inline(always)]
-    fn intersect(&self, ray: &Ray) -> Option<f32> {
+    fn hit(&self, ray: &Ray) -> Option<(f32, bool)> {
         let (o, d) = (ray.o, ray.d);
         let a = d.x * d.x + d.y * d.y;
         let b = -(d.x * o.x + d.y * o.y);
@@ -70,14 +64,32 @@ impl Shape for Cylinder {
             }
             let near = c / (b + s);
             if self.has(ray.at(near)) {
-                return Some(near);
+                return Some((near, true));
             }
         }
-        if far > 0.0 && far < f32::INFINITY && self.has(ray.at(far)) { Some(far) } else { None }
+        if far > 0.0 && far < f32::INFINITY && self.has(ray.at(far)) {
+            Some((far, false))
+        } else {
+            None
+        }
+    }
+}
+
+impl Shape for Cylinder {
+    fn bounds(&self, _: Shutter) -> Bounds {
+        let r = self.radius;
+        let (lo, hi) = (vec3(-r, -r, self.z_min), vec3(r, r, self.z_max));
+        Bounds { lo, hi }.padded(r * 1e-6)
+    }
+
+    #[inline(always)]
+    fn intersect(&self, ray: &Ray) -> Option<f32> {
+        self.hit(ray).map(|(t, _)| t)
     }
 
     #[inline(always)]
     fn interaction(&self, ray: &Ray, t: f32) -> SurfaceInteraction {
+        let is_outside = self.hit(ray).is_none_or(|(_, is_outside)| is_outside);
         let hit = ray.at(t);
         let n = vec3(hit.x, hit.y, 0.0).normalized();
         let arm = n * self.radius;
@@ -89,7 +101,7 @@ impl Shape for Cylinder {
             uv: [angle(p.y, p.x) / self.phi_max, (p.z - self.z_min) / height],
             dpdu: vec3(-p.y, p.x, 0.0) * self.phi_max,
             dpdv: vec3(0.0, 0.0, height),
-            ..SurfaceInteraction::plain(p, p_error, n, self.material)
+            ..SurfaceInteraction::plain(p, p_error, facing(ray, n, is_outside), self.material)
         }
     }
 }

@@ -136,7 +136,12 @@ fn blend([a, b, c]: [Vec3; 3], w: [f32; 3]) -> Vec3 {
 /// Unit normal of a triangle of any size; of one without an area, any unit vector.
 #[inline(always)]
 fn face_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
-    let (e1, e2) = (b - a, c - a);
+    scaled_normal(b - a, c - a)
+}
+
+/// Direction of `e1` x `e2`, which may be of any size; if it has none, any unit vector.
+#[inline(always)]
+pub(super) fn scaled_normal(e1: Vec3, e2: Vec3) -> Vec3 {
     // Brought to size 1 first: squares of small areas vanish in single precision.
     let size = max(e1.abs().max_component(), e2.abs().max_component());
     if size == 0.0 {

@@ -14,10 +14,13 @@
 //! [`Bounds`].
 
 mod box3;
+mod curve;
 mod cylinder;
 mod disk;
 mod instance;
 mod mesh;
+mod partial_sphere;
+mod patch;
 mod quad;
 mod sphere;
 mod triangle;
@@ -26,10 +29,13 @@ mod triangle;
 mod tests;
 
 pub use box3::Box3;
+pub use curve::{CURVE_CYLINDER, CURVE_FLAT, CURVE_RIBBON, Curve, MAX_HALVINGS, Ribbon};
 pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use instance::{Instance, Motion, NO_MOTION, Placement};
 pub use mesh::{MESH_COLORS, MESH_NORMALS, MESH_TANGENTS, MESH_UVS, Mesh, MeshTriangle};
+pub use partial_sphere::PartialSphere;
+pub use patch::MeshPatch;
 pub use quad::Quad;
 pub use sphere::{MovingSphere, NEEDS_UV, Sphere};
 pub use triangle::Triangle;
@@ -78,6 +84,9 @@ pub fn primitive_bounds(scene: &SceneView, prim: PrimRef, shutter: Shutter) -> B
         Some(PrimKind::MeshTriangle) => scene.mesh_triangles.get(i).bounds(scene),
         Some(PrimKind::Disk) => scene.disks.get(i).bounds(shutter),
         Some(PrimKind::Cylinder) => scene.cylinders.get(i).bounds(shutter),
+        Some(PrimKind::PartialSphere) => scene.partial_spheres.get(i).bounds(shutter),
+        Some(PrimKind::MeshPatch) => scene.mesh_patches.get(i).bounds(scene),
+        Some(PrimKind::Curve) => scene.curves.get(i).bounds(),
         Some(PrimKind::Instance) => scene.instances.get(i).bounds(scene, shutter),
         Some(PrimKind::Medium) => {
             let medium = scene.media.get(i);
@@ -117,6 +126,13 @@ pub fn intersect_primitive(
         }
         Some(kind @ PrimKind::Disk) if has(kind) => scene.disks.get(i).intersect(ray),
         Some(kind @ PrimKind::Cylinder) if has(kind) => scene.cylinders.get(i).intersect(ray),
+        Some(kind @ PrimKind::PartialSphere) if has(kind) => {
+            scene.partial_spheres.get(i).intersect(ray)
+        }
+        Some(kind @ PrimKind::MeshPatch) if has(kind) => {
+            scene.mesh_patches.get(i).intersect(scene, ray)
+        }
+        Some(kind @ PrimKind::Curve) if has(kind) => scene.curves.get(i).intersect(scene, ray),
         Some(kind @ PrimKind::Medium) if has(kind) => {
             scene.media.get(i).intersect(scene, i, ray, sampler, t_enter)
         }
@@ -158,6 +174,13 @@ fn local_interaction(scene: &SceneView, prim: PrimRef, ray: &Ray, t: f32) -> Sur
         }
         Some(kind @ PrimKind::Disk) if has(kind) => scene.disks.get(i).interaction(ray, t),
         Some(kind @ PrimKind::Cylinder) if has(kind) => scene.cylinders.get(i).interaction(ray, t),
+        Some(kind @ PrimKind::PartialSphere) if has(kind) => {
+            scene.partial_spheres.get(i).interaction(ray, t)
+        }
+        Some(kind @ PrimKind::MeshPatch) if has(kind) => {
+            scene.mesh_patches.get(i).interaction(scene, ray)
+        }
+        Some(kind @ PrimKind::Curve) if has(kind) => scene.curves.get(i).interaction(scene, ray),
         // Not surfaces: never asked for.
         _ => SurfaceInteraction::plain(ray.at(t), Vec3::ZERO, Vec3::ZERO, MaterialRef::default()),
     }

@@ -73,39 +73,24 @@ impl MovingSphere {
 }
 
 /// Both roots' ingredients for a ray against a sphere.
-struct Roots {
+pub(super) struct Roots {
     /// Squared length of the direction.
     a: f32,
     /// From the origin to the point nearest the centre, times `a`.
-    b: f32,
+    pub(super) b: f32,
     /// Signed power of the origin: below zero inside.
-    c: f32,
+    pub(super) c: f32,
     /// From that point to either root, times `a`.
     s: f32,
 }
 
 impl Roots {
-    /// Root behind the nearest point, for `b` + `s` > 0.
     #[inline(always)]
-    fn far(&self) -> f32 {
-        // Either form is exact in the reals; take the one that adds.
-        if self.b >= 0.0 { (self.b + self.s) / self.a } else { self.c / (self.b - self.s) }
-    }
-
-    /// Root before the nearest point, for an origin outside and `b` > 0.
-    #[inline(always)]
-    fn near(&self) -> f32 {
-        self.c / (self.b + self.s)
-    }
-}
-
-impl Sphere {
-    #[inline(always)]
-    fn roots(&self, ray: &Ray) -> Option<Roots> {
-        let oc = self.center - ray.o;
+    pub(super) fn of(center: Vec3, radius: f32, ray: &Ray) -> Option<Self> {
+        let oc = center - ray.o;
         let a = dot(ray.d, ray.d);
         let b = dot(ray.d, oc);
-        let r2 = self.radius * self.radius;
+        let r2 = radius * radius;
         // From the nearest point of the line to the centre, times a, so that a miss needs no
         // division.
         let l = oc * a - ray.d * b;
@@ -113,8 +98,42 @@ impl Sphere {
         if discriminant < 0.0 {
             return None;
         }
-        Some(Roots { a, b, c: dot(oc, oc) - r2, s: sqrt(discriminant / a) })
+        Some(Self { a, b, c: dot(oc, oc) - r2, s: sqrt(discriminant / a) })
     }
+
+    /// Root behind the nearest point, for `b` + `s` > 0.
+    #[inline(always)]
+    pub(super) fn far(&self) -> f32 {
+        // Either form is exact in the reals; take the one that adds.
+        if self.b >= 0.0 { (self.b + self.s) / self.a } else { self.c / (self.b - self.s) }
+    }
+
+    /// Root before the nearest point, for an origin outside and `b` > 0.
+    #[inline(always)]
+    pub(super) fn near(&self) -> f32 {
+        self.c / (self.b + self.s)
+    }
+}
+
+impl Sphere {
+    #[inline(always)]
+    fn roots(&self, ray: &Ray) -> Option<Roots> {
+        Roots::of(self.center, self.radius, ray)
+    }
+}
+
+/// The normal, turned by a few roundings if it would have a grazing ray come from the other side than it
+/// does, where the path would go on in the wrong half of space.
+#[inline(always)]
+pub(super) fn facing(ray: &Ray, n: Vec3, is_outside: bool) -> Vec3 {
+    const MARGIN: f32 = 1.0 / (1 << 21) as f32;
+    let along = dot(ray.d, n);
+    if is_outside == (along < 0.0) && along != 0.0 {
+        return n;
+    }
+    let (a, length) = (dot(ray.d, ray.d), ray.d.length());
+    let turn = 2.0 * along / a + if is_outside { MARGIN } else { -MARGIN } / length;
+    (n - ray.d * turn).normalized()
 }
 
 impl Shape for Sphere {
@@ -136,7 +155,9 @@ impl Shape for Sphere {
 
     #[inline(always)]
     fn interaction(&self, ray: &Ray, t: f32) -> SurfaceInteraction {
-        let n = (ray.at(t) - self.center).normalized();
+        let oc = self.center - ray.o;
+        let is_outside = dot(oc, oc) > self.radius * self.radius;
+        let n = facing(ray, (ray.at(t) - self.center).normalized(), is_outside);
         let arm = n * self.radius;
         let p = self.center + arm;
         // The arm is off by the normalisation, the sum by one rounding, and the next ray's view

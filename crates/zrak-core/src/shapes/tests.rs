@@ -1,8 +1,13 @@
 //! Tests.
 
 mod boxes;
+mod curve;
 mod instance;
+mod mesh;
+mod parts;
+mod patch;
 mod quad;
+mod round;
 mod spawn;
 mod sphere;
 mod triangle;

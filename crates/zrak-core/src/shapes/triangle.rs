@@ -27,16 +27,35 @@ pub struct Triangle {
 
 const _: () = assert!(size_of::<Triangle>() == 64);
 
-/// Smallest barycentric coordinate that a point on a triangle is given, so that it is not behind
-/// another triangle that meets it at an edge.
-const EDGE_INSET: f32 = 1.0 / 1_048_576.0;
+/// Smallest barycentric coordinate that a point on a triangle or patch is given, so that it is
+/// not behind another one that meets it at an edge.
+pub(super) const EDGE_INSET: f32 = 1.0 / 1_048_576.0;
 
-/// Parameter and barycentric coordinates of the intersection of a ray with a triangle.
-#[inline(always)]
-pub(super) fn hit_triangle(vertices: [Vec3; 3], ray: &Ray) -> Option<(f32, [f32; 3])> {
-    // Move the origin to zero and turn the axes so that the ray runs mostly along z.
-    let along = ray.d.abs();
-    let permute = |v: Vec3| {
+/// Axes in which a ray starts at the origin and runs exactly along z: what its shapes look like in them
+/// depends on each vertex alone, so shapes that share vertices share edges.
+#[derive(Clone, Copy)]
+pub(super) struct RayAxes {
+    o: Vec3,
+    along: Vec3,
+    sx: f32,
+    sy: f32,
+    /// Parameter of the ray per unit of z.
+    pub(super) sz: f32,
+}
+
+impl RayAxes {
+    #[inline(always)]
+    pub(super) fn of(ray: &Ray) -> Self {
+        let along = ray.d.abs();
+        let axes = Self { o: ray.o, along, sx: 0.0, sy: 0.0, sz: 0.0 };
+        let d = axes.permute(ray.d);
+        Self { sx: -d.x / d.z, sy: -d.y / d.z, sz: 1.0 / d.z, ..axes }
+    }
+
+    /// Turns the axes so that the ray runs mostly along z.
+    #[inline(always)]
+    fn permute(&self, v: Vec3) -> Vec3 {
+        let along = self.along;
         if along.z >= along.x && along.z >= along.y {
             v
         } else if along.x >= along.y {
@@ -44,13 +63,28 @@ pub(super) fn hit_triangle(vertices: [Vec3; 3], ray: &Ray) -> Option<(f32, [f32;
         } else {
             vec3(v.z, v.x, v.y)
         }
-    };
-    let d = permute(ray.d);
-    let [a, b, c] = vertices.map(|v| permute(v - ray.o));
-    // Shear so that it runs exactly along z.
-    let (sx, sy, sz) = (-d.x / d.z, -d.y / d.z, 1.0 / d.z);
-    let shear = |v: Vec3| (v.x + sx * v.z, v.y + sy * v.z);
-    let ((ax, ay), (bx, by), (cx, cy)) = (shear(a), shear(b), shear(c));
+    }
+
+    /// A point relative to the ray's origin, before the shear.
+    #[inline(always)]
+    pub(super) fn relative(&self, p: Vec3) -> Vec3 {
+        self.permute(p - self.o)
+    }
+
+    /// The same after the shear, without its z.
+    #[inline(always)]
+    pub(super) fn shear(&self, v: Vec3) -> (f32, f32) {
+        (v.x + self.sx * v.z, v.y + self.sy * v.z)
+    }
+}
+
+/// Parameter and barycentric coordinates of the intersection of a ray with a triangle.
+#[inline(always)]
+pub(super) fn hit_triangle(vertices: [Vec3; 3], ray: &Ray) -> Option<(f32, [f32; 3])> {
+    let axes = RayAxes::of(ray);
+    let sz = axes.sz;
+    let [a, b, c] = vertices.map(|v| axes.relative(v));
+    let ((ax, ay), (bx, by), (cx, cy)) = (axes.shear(a), axes.shear(b), axes.shear(c));
     // Edge functions: signed areas that the origin spans with the edges.
     let mut e0 = bx * cy - by * cx;
     let mut e1 = cx * ay - cy * ax;

@@ -186,7 +186,7 @@ impl ImageMap {
             let (dx, dy) = (corner & 1, corner >> 1);
             let weight = |d: i32, f: f32| if d == 1 { f } else { 1.0 - f };
             let texel = self.texel(arrays, level, ix + dx, iy + dy);
-            sum = sum + texel * (weight(dx, fx) * weight(dy, fy));
+            sum += texel * (weight(dx, fx) * weight(dy, fy));
             corner += 1;
         }
         sum

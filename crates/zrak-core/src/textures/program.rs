@@ -76,8 +76,9 @@ pub struct TextureOp {
 const _: () = assert!(size_of::<TextureOp>() == 32);
 
 impl Program {
-    /// Colour at a point.
-    #[cfg_attr(target_arch = "nvptx64", inline(always))]
+    /// Colour at a point. Always a call: copies of it wherever a texture is looked up would make kernels
+    /// that have no programs slow to compile, too.
+    #[inline(never)]
     pub(super) fn evaluate(&self, arrays: &TextureArrays, at: &TextureContext) -> Color {
         let mut slots = [Color::BLACK; N_SLOTS];
         let mut i = 0;

@@ -21,7 +21,12 @@ pub fn root() -> PathBuf {
 
 /// The scene, ready to render.
 pub fn arena(desc: &SceneDesc) -> Arc<SceneArena> {
-    match lower(desc, &LowerOptions::new(root())) {
+    arena_in(desc, &root())
+}
+
+/// The scene, ready to render, with the files that it names in a folder.
+pub fn arena_in(desc: &SceneDesc, folder: &Path) -> Arc<SceneArena> {
+    match lower(desc, &LowerOptions::new(folder)) {
         Ok(arena) => Arc::new(arena),
         Err(problems) => panic!("{problems:?}"),
     }

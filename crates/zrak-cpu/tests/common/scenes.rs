@@ -26,7 +26,7 @@ pub fn scene(size: [u32; 2], sky: f64) -> SceneDesc {
             shutter_close_s: 1.0,
             ..CameraDesc::default()
         },
-        render: RenderDesc { samples_per_pixel: 1, max_depth: 50, seed: 1 },
+        render: RenderDesc { samples_per_pixel: 1, seed: 1, ..RenderDesc::default() },
         background: BackgroundDesc::Constant { color: [sky; 3] },
         textures: BTreeMap::new(),
         materials: BTreeMap::new(),
@@ -57,12 +57,30 @@ pub fn light(radiance: f64, sides: LightSides) -> MaterialDesc {
 
 pub fn sphere(center: Triple, radius: f64, material: &str) -> ObjectDesc {
     let material = material.to_owned();
-    ObjectDesc::Sphere { center, center_end: None, radius, material, transform: Vec::new() }
+    whole_sphere(center, None, radius, material)
+}
+
+fn whole_sphere(
+    center: Triple,
+    center_end: Option<Triple>,
+    radius: f64,
+    material: String,
+) -> ObjectDesc {
+    ObjectDesc::Sphere {
+        center,
+        center_end,
+        radius,
+        z_min: None,
+        z_max: None,
+        phi_max_deg: None,
+        material,
+        transform: Vec::new(),
+    }
 }
 
 pub fn moving_sphere(center: Triple, end: Triple, radius: f64, material: &str) -> ObjectDesc {
     let material = material.to_owned();
-    ObjectDesc::Sphere { center, center_end: Some(end), radius, material, transform: Vec::new() }
+    whole_sphere(center, Some(end), radius, material)
 }
 
 pub fn quad(corner: Triple, u: Triple, v: Triple, material: &str) -> ObjectDesc {

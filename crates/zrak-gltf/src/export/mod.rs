@@ -65,14 +65,15 @@ pub fn to_glb(
 ) -> Result<(Vec<u8>, Vec<Warning>), Error> {
     let file = GltfFile::new();
     let mut export = Export { desc, base_dir, assets, file, warnings: Warnings::default() };
-    let mut nodes = Vec::new();
-    nodes.push(lights::camera(&mut export));
-    nodes.extend(lights::lights(&mut export));
-    Objects::write(&mut export, &mut nodes)?;
+    // First, for of many warnings only so many are shown.
     if desc.background != BackgroundDesc::default() {
         let message = "glTF has no backgrounds: the scene's is left out";
         export.warnings.note("background", message);
     }
+    let mut nodes = Vec::new();
+    nodes.push(lights::camera(&mut export));
+    nodes.extend(lights::lights(&mut export));
+    Objects::write(&mut export, &mut nodes)?;
     let mut scene = json!({"nodes": nodes});
     if !desc.name.is_empty() {
         scene["name"] = json!(desc.name);

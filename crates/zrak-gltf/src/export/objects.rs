@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde_json::json;
 use zrak_mesh::TriangleMesh;
-use zrak_scene::desc::{MeshDesc, ObjectDesc, TransformStep, Triple};
+use zrak_scene::desc::{CurveForm, MeshDesc, ObjectDesc, TransformStep, Triple};
 use zrak_scene::lower::Transform;
 
 use super::geometry::{self, Form, Parts};
@@ -101,11 +101,26 @@ impl<'e, 'd, 'n> Objects<'e, 'd, 'n> {
                 self.export.warnings.note(at, "glTF has no media of their own: it is left out");
                 return Ok(());
             }
-            ObjectDesc::Sphere { center, center_end, radius, material, transform } => {
+            ObjectDesc::Sphere {
+                center,
+                center_end,
+                radius,
+                z_min,
+                z_max,
+                phi_max_deg,
+                material,
+                transform,
+            } => {
                 if center_end.is_some() {
                     self.export.warnings.note(at, "the sphere stands where it is at time 0");
                 }
                 let (center, radius) = (*center, *radius);
+                if z_min.is_some() || z_max.is_some() || phi_max_deg.is_some() {
+                    let z = [z_min.unwrap_or(-radius), z_max.unwrap_or(radius)];
+                    let phi = phi_max_deg.unwrap_or(360.0);
+                    let mesh = shapes::partial_sphere(center, radius, z, phi);
+                    return self.shape(&mesh, material, place(transform), at);
+                }
                 return self.sphere(center, radius, material, &place(transform), at);
             }
             ObjectDesc::Quad { corner, u, v, material, transform } => {
@@ -124,18 +139,33 @@ impl<'e, 'd, 'n> Objects<'e, 'd, 'n> {
             ObjectDesc::Cylinder { radius, z_min, z_max, phi_max_deg, material, transform } => {
                 (shapes::cylinder(*radius, *z_min, *z_max, *phi_max_deg), material, transform)
             }
+            ObjectDesc::Curve { points, widths, form, normals, material, transform } => {
+                let n = points.len();
+                let n_normals = if *form == CurveForm::Ribbon { n / 3 + 1 } else { 0 };
+                if n < 4 || n % 3 != 1 || normals.len() != n_normals {
+                    let message = "the curve lacks points or normals";
+                    return Err(Error::new(ErrorKind::Invalid, at, message, "validate the scene"));
+                }
+                (shapes::curve(points, *widths, *form, normals), material, transform)
+            }
         };
+        self.shape(&shape, material, place(transform), at)
+    }
+
+    /// A shape as triangles, in the world.
+    fn shape(
+        &mut self,
+        shape: &TriangleMesh,
+        material: &str,
+        map: Transform,
+        at: &str,
+    ) -> Result<(), Error> {
         let Some(Material { index, .. }) = self.materials.get(self.export, material, at)? else {
             return Ok(());
         };
-        let form = Form {
-            materials: vec![Some(index)],
-            has_colors: false,
-            flip: false,
-            baked: Some(place(transform)),
-            name: at,
-        };
-        if let Some(mesh) = geometry::write(&mut self.export.file, &shape, &form) {
+        let materials = vec![Some(index)];
+        let form = Form { materials, has_colors: false, flip: false, baked: Some(map), name: at };
+        if let Some(mesh) = geometry::write(&mut self.export.file, shape, &form) {
             self.node(mesh, &Transform::IDENTITY, at)?;
         }
         Ok(())
@@ -241,6 +271,19 @@ impl<'e, 'd, 'n> Objects<'e, 'd, 'n> {
         };
         let mesh = match desc {
             MeshDesc::Loaded(mesh) => Some(Arc::clone(mesh)),
+            MeshDesc::Patches { positions, patches, normals, uvs } => {
+                let n = positions.len();
+                let is_good = |len: usize| len == 0 || len == n;
+                if patches.iter().flatten().any(|&v| v as usize >= n)
+                    || !is_good(normals.len())
+                    || !is_good(uvs.len())
+                {
+                    let message = "a patch has a corner that is not there";
+                    let at = format!("meshes.{name}");
+                    return Err(Error::new(ErrorKind::Invalid, at, message, help));
+                }
+                Some(Arc::new(shapes::patches(positions, patches, normals, uvs)))
+            }
             MeshDesc::Inline { positions, triangles, normals, uvs, colors } => {
                 Some(Arc::new(TriangleMesh {
                     positions: positions.clone(),

@@ -135,6 +135,8 @@ pub(crate) struct InstancingAttributes {
 
 #[derive(Debug, Deserialize)]
 pub(crate) struct Camera {
+    #[serde(default)]
+    pub(crate) name: Option<String>,
     #[serde(rename = "type")]
     pub(crate) kind: String,
     pub(crate) perspective: Option<Perspective>,

@@ -8,10 +8,10 @@ use crate::builder::Builder;
 
 /// Red, green, blue and alpha of one texel, as a PNG.
 pub fn picture() -> Vec<u8> {
-    // Made by hand: header, one row of filter 0 in a stored block, end.
-    const BYTES: &str = "89504e470d0a1a0a0000000d4948445200000001000000010806000000\
-        1f15c4890000000d49444154789c63f8cfc0f01f00050001ff56c7\
-        2f0d0000000049454e44ae426082";
+    // Header, one row of filter 0, end.
+    const BYTES: &str = "89504e470d0a1a0a0000000d49484452000000010000000108060000001f15c489000000\
+        0d4944415478da63f8cfd0f01f000600027ffe5c612b0000000049454e44ae42\
+        6082";
     let digits: Vec<u8> = BYTES.chars().filter_map(|c| c.to_digit(16)).map(|d| d as u8).collect();
     digits.chunks_exact(2).map(|d| d[0] << 4 | d[1]).collect()
 }

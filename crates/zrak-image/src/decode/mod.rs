@@ -81,13 +81,7 @@ impl Limits {
         }
         let n_bytes = width * height * bytes_per_texel;
         if n_bytes > self.max_bytes {
-            return Err(Fault::new(
-                ErrorKind::TooLarge,
-                format!(
-                    "its {width}x{height} texels take {n_bytes} bytes and the limit is {}",
-                    self.max_bytes
-                ),
-            ));
+            return Err(Fault::too_many_bytes(width, height, n_bytes, self.max_bytes));
         }
         Ok((width * height) as usize)
     }
@@ -119,6 +113,22 @@ pub fn read_picture(path: &Path) -> Result<Picture, Error> {
 /// infinite or NaN is an error that names it, since it would spread over the render.
 pub fn read_texture(path: &Path, limits: &Limits) -> Result<TextureImage, Error> {
     decode_texture(&read_bytes(path, limits)?, path, limits)
+}
+
+/// Bytes that the texels of an image will take, by its header: to make room for them, or not, before
+/// they are decoded. `path` is what errors call it.
+pub fn texel_bytes(bytes: &[u8], path: &Path, limits: &Limits) -> Result<u64, Error> {
+    // A decoder that may take nothing says how much it would have taken.
+    match decode(bytes, &Limits { max_bytes: 0, ..*limits }) {
+        Ok(_) => Ok(0),
+        Err(Fault { n_bytes: Some(n), .. }) => Ok(n),
+        Err(fault) => Err(fault.at(path)),
+    }
+}
+
+/// The bytes of an image's file, which is a regular file within the limits.
+pub fn read_image_file(path: &Path, limits: &Limits) -> Result<Vec<u8>, Error> {
+    read_bytes(path, limits)
 }
 
 /// As [`read_texture`], for bytes in memory; `path` is what errors call them.

@@ -322,6 +322,17 @@ fn limits_are_those_of_the_header() {
 }
 
 #[test]
+fn the_header_says_what_texels_will_take() {
+    for format in FORMATS {
+        let bytes = bytes_of(format, &picture());
+        let per_texel = if matches!(format, Format::Png | Format::Jpeg) { 4 } else { 12 };
+        let n_bytes = texel_bytes(&bytes, "a".as_ref(), &SMALL).unwrap();
+        assert_eq!(n_bytes, 37 * 41 * per_texel, "{format:?}");
+        assert!(texel_bytes(&bytes[..8], "a".as_ref(), &SMALL).is_err(), "{format:?}");
+    }
+}
+
+#[test]
 fn a_header_alone_cannot_take_memory() {
     // Headers that claim the largest size, with next to no data behind.
     let mut png = bytes_of(Format::Png, &picture());

@@ -15,7 +15,7 @@ mod tests;
 
 use std::path::Path;
 
-pub use replace::{check_writable, replace_file};
+pub use replace::{check_replaceable, check_writable, replace_file, replace_file_with};
 
 use crate::{Error, Format, Metadata, Picture, srgb};
 

@@ -14,7 +14,7 @@ use crate::{Error, ErrorKind, Format};
 ///
 /// A symbolic link stays: the file that it leads to is replaced.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    replace_with(path, |file| file.write_all(bytes))
+    replace_file_with(path, |file| file.write_all(bytes))
 }
 
 /// Fails if [`write`](crate::write()) to `path` would: to be called before a long render.
@@ -23,6 +23,11 @@ pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
 /// folder exists and takes a new file, which is created and removed.
 pub fn check_writable(path: &Path) -> Result<(), Error> {
     Format::from_path(path)?;
+    check_replaceable(path)
+}
+
+/// Fails if [`replace_file`] to `path` would: [`check_writable`] for files that are no pictures.
+pub fn check_replaceable(path: &Path) -> Result<(), Error> {
     let target = Target::resolve(path)?;
     File::create(&target.part)
         .and_then(|_| fs::remove_file(&target.part))
@@ -30,7 +35,7 @@ pub fn check_writable(path: &Path) -> Result<(), Error> {
 }
 
 /// [`replace_file`] with the content written by `write_content`.
-fn replace_with(
+pub fn replace_file_with(
     path: &Path,
     write_content: impl FnOnce(&mut File) -> io::Result<()>,
 ) -> Result<(), Error> {
@@ -139,7 +144,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.pfm");
         fs::write(&path, b"old").unwrap();
-        let error = replace_with(&path, |file| {
+        let error = replace_file_with(&path, |file| {
             file.write_all(b"half of the new")?;
             Err(io::ErrorKind::StorageFull.into())
         })

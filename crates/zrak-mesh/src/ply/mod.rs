@@ -1,12 +1,15 @@
 //! PLY files: the Stanford polygon format, as text and as bytes of both orders.
 //!
 //! Read are the elements `vertex` (x y z; nx ny nz; u v, s t, texture_u texture_v or texture_s texture_t;
-//! red green blue and alpha) and `face` (vertex_indices or vertex_index). Everything else is skipped.
+//! red green blue and alpha) and `face` (vertex_indices or vertex_index). Everything else is skipped, but
+//! for what only zrak writes: tangents (tx ty tz tw) and the groups of faces (group).
 //! Colours of integer type are sRGB codes, as scanners write them, and are made linear; those of
 //! floating-point type are linear.
 
 mod body;
+mod faces;
 mod header;
+mod vertices;
 mod write;
 
 #[cfg(test)]
@@ -14,6 +17,7 @@ mod tests;
 
 use std::path::Path;
 
+pub(crate) use vertices::linear;
 pub use write::write;
 
 use crate::{Error, Limits, TriangleMesh, read_file};
@@ -24,7 +28,7 @@ use crate::{Error, Limits, TriangleMesh, read_file};
 /// If it cannot be read, is not a PLY file, is damaged, or larger than the limits allow.
 pub fn read(path: &Path, limits: &Limits) -> Result<TriangleMesh, Error> {
     let bytes = read_file(path, limits)?;
-    parse(&bytes, limits).map_err(|error| Error::new(format!("{}: {error}", path.display())))
+    parse(&bytes, limits).map_err(|error| error.in_file(path.display()))
 }
 
 /// The mesh in the bytes of a file. Triangles without an area are dropped.

@@ -114,18 +114,74 @@ fn what_is_wrong_is_said() {
         (header(&["element vertex 2", "property float x"]), "lack x, y or z"),
         (
             ascii(b"0 0 0\n1 0 0\n1 1 0\n0 1\n4 0 1 2 3\n"),
-            "line 13: element `vertex` number 3 ends",
+            "line 13, column 4: element `vertex` number 3 ends",
         ),
-        (ascii(b"0 0 0\n1 0 zero\n1 1 0\n0 1 0\n4 0 1 2 3\n"), "line 11: `zero` is not a number"),
+        (
+            ascii(b"0 0 0\n1 0 zero\n1 1 0\n0 1 0\n4 0 1 2 3\n"),
+            "line 11, column 5: `zero` is not a number",
+        ),
         (ascii(b"0 0 0\n1 0 0\n1 1 0\n0 1 0\n"), "ends within"),
         (ascii(b"0 0 0\n1 0 0\n1 1 0\n0 1 0\n\n \n"), "ends within element `face` number 0"),
         (ascii(b"0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 4\n"), "face 0 has a corner 4"),
         (ascii(b"0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 -1\n"), "face 0 has a corner -1"),
         (ascii(b"0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 1\n"), "no triangles"),
         (ascii(b"0 0 0\n1 0 nan\n1 1 0\n0 1 0\n4 0 1 2 3\n"), "vertex 1 of the mesh is not finite"),
-        (ascii(b"0 0 0\n1 0 0\n1 1 0\n0 1 0\n99999999 0 1 2 3\n"), "a list `vertex_indices` of"),
+        (
+            ascii(b"0 0 0\n1 0 0\n1 1 0\n0 1 0\n99999999 0 1 2 3\n"),
+            "line 14, column 1: a list `vertex_indices` of 99999999 entries",
+        ),
     ] {
         assert!(message.contains(words), "{message:?} does not say {words:?}");
+    }
+}
+
+#[test]
+fn polygons_of_bytes_of_any_type_are_read() {
+    for (count, index) in
+        [("uchar", "uchar"), ("int", "ushort"), ("char", "uint"), ("ushort", "short")]
+    {
+        for big in [false, true] {
+            let mut body = Vec::new();
+            let put = |body: &mut Vec<u8>, kind: &str, x: u8| {
+                let n = match kind {
+                    "uchar" | "char" => 1,
+                    "ushort" | "short" => 2,
+                    _ => 4,
+                };
+                let at = if big { n - 1 } else { 0 };
+                body.extend((0..n).map(|i| if i == at { x } else { 0 }));
+            };
+            for p in [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]] {
+                for x in [p[0], p[1], 0.0_f32] {
+                    body.extend(if big { x.to_be_bytes() } else { x.to_le_bytes() });
+                }
+            }
+            let faces: [&[u8]; 3] = [&[0, 1, 2], &[0, 1, 2, 3], &[1, 2, 3]];
+            for (i, face) in faces.iter().enumerate() {
+                body.push(7);
+                put(&mut body, count, face.len() as u8);
+                face.iter().for_each(|&x| put(&mut body, index, x));
+                body.push(i as u8);
+            }
+            let list = format!("property list {count} {index} vertex_index");
+            let lines = [
+                &SQUARE[..4],
+                &["element face 3", "property uchar flags", &list, "property uchar group"],
+            ]
+            .concat();
+            let format = if big { "binary_big_endian" } else { "binary_little_endian" };
+            let mesh = read(&file(format, &lines, &body)).unwrap();
+            assert_eq!(mesh.triangles, [[0, 1, 2], [0, 1, 2], [0, 2, 3], [1, 2, 3]]);
+            assert_eq!(
+                (mesh.face_groups.as_slice(), mesh.groups.len()),
+                ([0, 1, 1, 2].as_slice(), 3)
+            );
+            // Cut off anywhere, it is refused.
+            for len in 0..body.len() {
+                let error = read(&file(format, &lines, &body[..len])).unwrap_err();
+                assert!(error.contains("the file ends"), "{error}");
+            }
+        }
     }
 }
 
@@ -168,7 +224,8 @@ fn gzip_bombs_stop_at_the_limit() {
 
 /// A mesh of a few vertices with any of the attributes.
 fn any_mesh() -> impl Strategy<Value = TriangleMesh> {
-    (3_usize..20, any::<[bool; 3]>(), any::<u32>()).prop_map(|(n, [normals, uvs, colors], seed)| {
+    (3_usize..20, any::<[bool; 5]>(), any::<u32>()).prop_map(|(n, has, seed)| {
+        let [normals, uvs, colors, tangents, groups] = has;
         let mut state = seed;
         let mut random = move || {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -186,11 +243,19 @@ fn any_mesh() -> impl Strategy<Value = TriangleMesh> {
             if colors {
                 mesh.colors.push([random(), random(), random(), random()]);
             }
+            if tangents {
+                mesh.tangents.push([random(), random(), random(), 1.0]);
+            }
             if i >= 2 {
                 mesh.triangles.push([0, i as u32 - 1, i as u32]);
+                if groups {
+                    mesh.face_groups.push(i as u32 % 3);
+                }
             }
         }
         mesh.drop_degenerate();
+        let n_groups = mesh.face_groups.iter().max().map_or(0, |g| g + 1);
+        mesh.groups = (0..n_groups).map(|i| i.to_string()).collect();
         mesh
     })
 }

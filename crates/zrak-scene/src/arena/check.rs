@@ -1,17 +1,30 @@
-//! Checks that no handle of an arena leads astray: the GPU reads without looking.
+//! Checks that no handle of an arena leads astray: the GPU reads without looking. And that nothing in it
+//! makes a loop run for ages, for an arena may come from a file that anybody may have written.
+//!
+//! What is large is checked in pieces, on all threads, in one go with the checksum of a file: nodes and
+//! triangles of meshes. Of several faults, the same one is reported whatever the number of threads.
 
-use zrak_core::accel::{MAX_DEPTH, Node};
+mod meshes;
+#[cfg(test)]
+mod tests;
+mod trees;
+
+use rayon::prelude::*;
 use zrak_core::accessor::Array;
 use zrak_core::materials::{Conductor, Roughness};
 use zrak_core::media::{NO_PLACEMENT, VACUUM};
 use zrak_core::scene::{
     MaterialKind, MaterialRef, PrimKind, PrimRef, SceneView, TextureKind, TextureRef,
 };
-use zrak_core::shapes::{Instance, MESH_COLORS, MESH_NORMALS, MESH_TANGENTS, MESH_UVS, NO_MOTION};
+use zrak_core::shapes::{CURVE_RIBBON, MAX_HALVINGS, NO_MOTION};
 use zrak_core::textures::{
     ImageTexture, MAX_LEVELS, N_OPS, NO_MAPPING, OP_FRACTAL, OP_IMAGE, OP_NOISE, TEXELS_LINEAR,
     TEXELS_SRGB8, TEXELS_UNORM16, words_per_texel,
 };
+
+use super::{ArrayName, Piece};
+use meshes::MeshChecker;
+use trees::TreeChecker;
 
 /// What is wrong with an arena.
 #[derive(Debug, thiserror::Error)]
@@ -32,47 +45,98 @@ fn require(condition: bool, message: impl FnOnce() -> String) -> Check {
     if condition { Ok(()) } else { Err(Corrupt::new(message())) }
 }
 
+/// Most records that one thread goes through when there are more.
+const BATCH: usize = 4096;
+
+/// Most steps from a material or a texture that refers to others to one that does not.
+const NESTING_MAX: u8 = 64;
+/// Most operations of a texture.
+const OPS_MAX: u32 = 1 << 13;
+/// Most octaves of noise.
+const OCTAVES_MAX: u32 = 64;
+/// Most segments of a path in a coat, and most paths.
+const COAT_MAX: u32 = 1000;
+
+/// Checks every record of an array.
+fn each<T: bytemuck::Pod + Sync>(
+    array: &Array<'_, T>,
+    check: impl Fn(usize, T) -> Check + Sync,
+) -> Check {
+    let one = |i: u32| check(i as usize, array.get(i)).err();
+    let found = if array.len() as usize <= BATCH {
+        (0..array.len()).find_map(one)
+    } else {
+        (0..array.len()).into_par_iter().with_min_len(BATCH).find_map_first(one)
+    };
+    found.map_or(Ok(()), Err)
+}
+
 fn records<'a, T: bytemuck::Pod>(array: &Array<'a, T>) -> impl Iterator<Item = T> + use<'a, T> {
     let array = *array;
     (0..array.len()).map(move |i| array.get(i))
 }
 
-/// Checks every handle, link, image and tree.
-pub(super) fn check(scene: &SceneView) -> Check {
-    check_trees("nodes2", scene, &scene.nodes2, |instance| instance.root2)?;
-    check_trees("nodes8", scene, &scene.nodes8, |instance| instance.root8)?;
-    for shape in records(&scene.spheres) {
-        check_material(scene, shape.material)?;
-    }
-    for shape in records(&scene.moving_spheres) {
-        check_material(scene, shape.material)?;
-    }
-    for shape in records(&scene.quads) {
-        check_material(scene, shape.material)?;
-    }
-    for shape in records(&scene.boxes) {
-        check_material(scene, shape.material)?;
-    }
-    for shape in records(&scene.triangles) {
-        check_material(scene, shape.material)?;
-    }
-    for disk in records(&scene.disks) {
-        check_material(scene, disk.material)?;
-    }
-    for cylinder in records(&scene.cylinders) {
-        check_material(scene, cylinder.material)?;
-    }
-    for mesh in records(&scene.meshes) {
-        check_material(scene, mesh.material)?;
-    }
-    check_meshes(scene)?;
+/// Checks every handle, link, image and tree. `at_piece` is called with the number of every piece,
+/// from several threads, unless there is an error.
+pub(super) fn check(
+    scene: &SceneView,
+    pieces: &[Piece],
+    at_piece: &(dyn Fn(usize) + Sync),
+) -> Check {
+    let binary = TreeChecker::new("nodes2", scene, scene.nodes2, |instance| instance.root2)?;
+    let wide = TreeChecker::new("nodes8", scene, scene.nodes8, |instance| instance.root8)?;
+    let meshes = MeshChecker::new(scene);
+    let one = |i: usize| {
+        let piece = pieces[i];
+        at_piece(i);
+        match piece.array {
+            ArrayName::nodes2 => binary.check_piece(piece.index),
+            ArrayName::nodes8 => wide.check_piece(piece.index),
+            ArrayName::mesh_triangles => meshes.check_piece(piece.index),
+            _ => Ok(()),
+        }
+    };
+    let fault = (0..pieces.len()).into_par_iter().find_map_first(|i| one(i).err());
+    fault.map_or(Ok(()), Err)?;
+    let (binary, wide) = rayon::join(|| binary.finish(), || wide.finish());
+    binary?;
+    wide?;
+    meshes.check_patches()?;
+    check_shapes(scene)?;
+    check_simple_materials(scene)?;
     check_surfaces(scene)?;
-    for instance in records(&scene.instances) {
+    check_plain_textures(scene)?;
+    check_programs(scene)
+}
+
+/// Checks primitives, and what all of them have in common, except for the triangles of meshes.
+fn check_shapes(scene: &SceneView) -> Check {
+    each(&scene.spheres, |_, shape| check_material(scene, shape.material))?;
+    each(&scene.moving_spheres, |_, shape| check_material(scene, shape.material))?;
+    each(&scene.quads, |_, shape| check_material(scene, shape.material))?;
+    each(&scene.boxes, |_, shape| check_material(scene, shape.material))?;
+    each(&scene.triangles, |_, shape| check_material(scene, shape.material))?;
+    each(&scene.disks, |_, shape| check_material(scene, shape.material))?;
+    each(&scene.cylinders, |_, shape| check_material(scene, shape.material))?;
+    each(&scene.partial_spheres, |_, shape| check_material(scene, shape.material))?;
+    each(&scene.curves, |_, curve| {
+        check_material(scene, curve.material)?;
+        require(curve.form <= CURVE_RIBBON, || format!("a curve of form {}", curve.form))?;
+        require(curve.form != CURVE_RIBBON || curve.ribbon < scene.ribbons.len(), || {
+            format!("no normals {} of a ribbon", curve.ribbon)
+        })?;
+        // A ray walks over all pieces.
+        require(curve.n_halvings <= MAX_HALVINGS, || {
+            format!("a curve that is halved {} times", curve.n_halvings)
+        })
+    })?;
+    each(&scene.meshes, |_, mesh| check_material(scene, mesh.material))?;
+    each(&scene.instances, |_, instance| {
         require(instance.motion == NO_MOTION || instance.motion < scene.motions.len(), || {
             format!("no motion {}", instance.motion)
-        })?;
-    }
-    for medium in records(&scene.media) {
+        })
+    })?;
+    each(&scene.media, |_, medium| {
         check_prim(scene, medium.boundary)?;
         require(is_plain_convex(medium.boundary), || {
             format!("a medium in primitive {:#x}", medium.boundary.0)
@@ -84,24 +148,32 @@ pub(super) fn check(scene: &SceneView) -> Check {
         check_material(scene, medium.material)?;
         require(medium.material.kind() == Some(MaterialKind::Isotropic), || {
             format!("a medium with material {:#x}", medium.material.0)
-        })?;
-    }
-    for input in records(&scene.lambertians)
-        .map(|m| m.albedo)
-        .chain(records(&scene.metals).map(|m| m.reflectance))
-        .chain(records(&scene.isotropics).map(|m| m.albedo))
-        .chain(records(&scene.diffuse_lights).map(|m| m.radiance))
-    {
-        check_texture(scene, input.texture)?;
-    }
+        })
+    })
+}
+
+/// Checks materials that lead to one texture each.
+fn check_simple_materials(scene: &SceneView) -> Check {
+    each(&scene.lambertians, |_, m| check_texture(scene, m.albedo.texture))?;
+    each(&scene.metals, |_, m| check_texture(scene, m.reflectance.texture))?;
+    each(&scene.isotropics, |_, m| check_texture(scene, m.albedo.texture))?;
+    each(&scene.diffuse_lights, |_, m| check_texture(scene, m.radiance.texture))
+}
+
+/// Checks checkers and plain images.
+fn check_plain_textures(scene: &SceneView) -> Check {
+    let mut levels = Nesting::with_capacity(scene.checkers.len());
     for (i, checker) in records(&scene.checkers).enumerate() {
-        for texture in [checker.even.texture, checker.odd.texture] {
+        let inner = |texture: TextureRef| {
+            let is_checker = texture.kind() == Some(TextureKind::Checker);
+            is_checker.then_some(texture.index() as usize)
+        };
+        let textures = [checker.even.texture, checker.odd.texture];
+        for texture in textures {
             check_texture(scene, texture)?;
-            // To earlier ones only, so that no chain is a circle.
-            let is_later =
-                texture.kind() == Some(TextureKind::Checker) && texture.index() as usize >= i;
-            require(!is_later, || format!("checker {i} refers to a later one"))?;
         }
+        // To earlier ones only, so that no chain is a circle.
+        levels.push(textures.map(inner), || format!("checker {i} refers to a later one"))?;
     }
     for image in records(&scene.images) {
         require(matches!(image.format, TEXELS_SRGB8 | TEXELS_LINEAR), || {
@@ -109,7 +181,28 @@ pub(super) fn check(scene: &SceneView) -> Check {
         })?;
         check_raster(scene, &image, 1)?;
     }
-    check_programs(scene)
+    Ok(())
+}
+
+/// How deep records are nested that may refer to earlier ones of their kind.
+struct Nesting(Vec<u8>);
+
+impl Nesting {
+    fn with_capacity(n: u32) -> Self {
+        Self(Vec::with_capacity(n as usize))
+    }
+
+    /// Adds the next record, which refers to these.
+    fn push(&mut self, inner: [Option<usize>; 2], message: impl Fn() -> String) -> Check {
+        let mut level = 0;
+        for i in inner.into_iter().flatten() {
+            let Some(&below) = self.0.get(i) else { return Err(Corrupt::new(message())) };
+            level = level.max(below + 1);
+        }
+        require(level <= NESTING_MAX, || format!("more than {NESTING_MAX} in one another"))?;
+        self.0.push(level);
+        Ok(())
+    }
 }
 
 /// Checks that the levels of an image lie within the texels.
@@ -152,6 +245,7 @@ fn check_programs(scene: &SceneView) -> Check {
     }
     for program in records(&scene.programs) {
         let end = u64::from(program.first_op) + u64::from(program.n_ops);
+        require(program.n_ops <= OPS_MAX, || format!("a texture of {} steps", program.n_ops))?;
         require(program.n_ops > 0 && end <= u64::from(scene.texture_ops.len()), || {
             "a texture whose operations are not there".into()
         })?;
@@ -172,7 +266,7 @@ fn check_programs(scene: &SceneView) -> Check {
         .map(|noise| noise.octaves)
         .chain(records(&scene.fractals).map(|fractal| fractal.octaves))
     {
-        require(octaves <= 64, || format!("noise of {octaves} octaves"))?;
+        require(octaves <= OCTAVES_MAX, || format!("noise of {octaves} octaves"))?;
     }
     Ok(())
 }
@@ -182,7 +276,14 @@ fn is_plain_convex(prim: PrimRef) -> bool {
 }
 
 fn check_prim(scene: &SceneView, prim: PrimRef) -> Check {
-    let len = match prim.kind() {
+    let is_there = !prim.is_node() && prim.index() < n_prims(scene, prim.0 >> 28);
+    require(is_there, || format!("no primitive {:#x}", prim.0))
+}
+
+/// Number of primitives of a kind.
+fn n_prims(scene: &SceneView, kind: u32) -> u32 {
+    // A handle with this kind, which is not a node's.
+    match PrimRef(kind << 28).kind() {
         Some(PrimKind::Sphere) => scene.spheres.len(),
         Some(PrimKind::MovingSphere) => scene.moving_spheres.len(),
         Some(PrimKind::Quad) => scene.quads.len(),
@@ -191,11 +292,13 @@ fn check_prim(scene: &SceneView, prim: PrimRef) -> Check {
         Some(PrimKind::MeshTriangle) => scene.mesh_triangles.len(),
         Some(PrimKind::Disk) => scene.disks.len(),
         Some(PrimKind::Cylinder) => scene.cylinders.len(),
+        Some(PrimKind::PartialSphere) => scene.partial_spheres.len(),
+        Some(PrimKind::MeshPatch) => scene.mesh_patches.len(),
+        Some(PrimKind::Curve) => scene.curves.len(),
         Some(PrimKind::Instance) => scene.instances.len(),
         Some(PrimKind::Medium) => scene.media.len(),
         Some(PrimKind::Node) | None => 0,
-    };
-    require(prim.index() < len, || format!("no primitive {:#x}", prim.0))
+    }
 }
 
 fn check_material(scene: &SceneView, material: MaterialRef) -> Check {
@@ -231,78 +334,6 @@ fn check_texture(scene: &SceneView, texture: TextureRef) -> Check {
     require(texture.index() < len, || format!("no texture {:#x}", texture.0))
 }
 
-/// Checks that the trees are some: each node but a root has one parent, and none is too deep. The
-/// world's root is the first; the others are those of instances, in whose trees no instance and no
-/// medium is.
-fn check_trees<const N: usize>(
-    name: &str,
-    scene: &SceneView,
-    nodes: &Array<Node<N>>,
-    root: impl Fn(&Instance) -> u32,
-) -> Check {
-    require(!nodes.is_empty(), || format!("{name} has no root"))?;
-    // Depth of each node, with the top bit set in the trees of instances; 0 for one without a parent.
-    const PLACED: u8 = 0x80;
-    let mut depths = vec![0_u8; nodes.len() as usize];
-    depths[0] = 1;
-    for instance in records(&scene.instances) {
-        let root = root(&instance);
-        require(root > 0 && root < nodes.len(), || {
-            format!("an instance of node {root} of {name}")
-        })?;
-        depths[root as usize] = 1 | PLACED;
-    }
-    for i in 0..nodes.len() {
-        let depth = depths[i as usize];
-        require(depth > 0, || format!("node {i} of {name} has no parent before it"))?;
-        for child in nodes.get(i).children {
-            if child == PrimRef::NONE {
-                continue;
-            }
-            if !child.is_node() {
-                check_prim(scene, child)?;
-                let only_in_world =
-                    matches!(child.kind(), Some(PrimKind::Instance | PrimKind::Medium));
-                require(depth & PLACED == 0 || !only_in_world, || {
-                    format!("an instance or a medium in a tree of {name} that instances place")
-                })?;
-                continue;
-            }
-            let c = child.index() as usize;
-            require(c < depths.len() && c > i as usize && depths[c] == 0, || {
-                format!("node {i} of {name} has node {c} as a child")
-            })?;
-            let too_deep = usize::from(depth & !PLACED) >= MAX_DEPTH;
-            require(!too_deep, || format!("{name} is too deep"))?;
-            depths[c] = depth + 1;
-        }
-    }
-    Ok(())
-}
-
-/// Checks that triangles lead to vertices, and vertices to all that their meshes say they have.
-fn check_meshes(scene: &SceneView) -> Check {
-    let n_vertices = scene.positions.len();
-    for triangle in records(&scene.mesh_triangles) {
-        require(triangle.mesh < scene.meshes.len(), || format!("no mesh {}", triangle.mesh))?;
-        let mesh = scene.meshes.get(triangle.mesh);
-        for v in triangle.vertices {
-            require(v < n_vertices, || format!("no vertex {v}"))?;
-            for (flag, offset, len) in [
-                (MESH_NORMALS, mesh.normal_offset, scene.normals.len()),
-                (MESH_UVS, mesh.uv_offset, scene.uvs.len()),
-                (MESH_TANGENTS, mesh.tangent_offset, scene.tangents.len()),
-                (MESH_COLORS, mesh.color_offset, scene.colors.len()),
-            ] {
-                require(mesh.flags & flag == 0 || v.wrapping_add(offset) < len, || {
-                    format!("vertex {v} lacks an attribute of its mesh")
-                })?;
-            }
-        }
-    }
-    Ok(())
-}
-
 /// Checks materials that lead to other materials, to textures and to media.
 fn check_surfaces(scene: &SceneView) -> Check {
     let roughness = |r: Roughness| [r.u.texture, r.v.texture];
@@ -324,17 +355,24 @@ fn check_surfaces(scene: &SceneView) -> Check {
     {
         check_texture(scene, texture)?;
     }
+    for coat in records(&scene.layereds) {
+        require(coat.max_depth <= COAT_MAX && coat.n_samples <= COAT_MAX, || {
+            format!("a coat with {} paths of {} segments", coat.n_samples, coat.max_depth)
+        })?;
+    }
+    let mut levels = Nesting::with_capacity(scene.mixes.len());
     for (i, mix) in records(&scene.mixes).enumerate() {
         check_texture(scene, mix.amount.texture)?;
+        let message = || format!("mix {i} leads to a later one or to a surface");
+        let inner = |material: MaterialRef| {
+            let is_mix = material.kind() == Some(MaterialKind::Mix);
+            is_mix.then_some(material.index() as usize)
+        };
         for material in mix.materials {
             check_material(scene, material)?;
-            let leads_on = match material.kind() {
-                Some(MaterialKind::Mix) => material.index() as usize >= i,
-                Some(MaterialKind::Surface) => true,
-                _ => false,
-            };
-            require(!leads_on, || format!("mix {i} leads to a later one or to a surface"))?;
+            require(material.kind() != Some(MaterialKind::Surface), message)?;
         }
+        levels.push(mix.materials.map(inner), message)?;
     }
     for (i, surface) in records(&scene.surfaces).enumerate() {
         check_material(scene, surface.base)?;

@@ -9,8 +9,9 @@ use zrak_core::scene::{
     Background, Globals, MaterialKind, MaterialRef, PrimKind, PrimRef, TextureKind, TextureRef,
 };
 use zrak_core::shapes::{
-    Box3, Cylinder, Disk, Instance, MESH_COLORS, MESH_NORMALS, MESH_TANGENTS, MESH_UVS, Mesh,
-    MeshTriangle, Motion, MovingSphere, Placement, Quad, Sphere, Triangle,
+    Box3, CURVE_RIBBON, Curve, Cylinder, Disk, Instance, MESH_COLORS, MESH_NORMALS, MESH_TANGENTS,
+    MESH_UVS, Mesh, MeshPatch, MeshTriangle, Motion, MovingSphere, PartialSphere, Placement, Quad,
+    Sphere, Triangle,
 };
 use zrak_core::textures::{
     Checker, ColorInput, ImageMap, ImageTexture, N_OPS, Noise, OP_FRACTAL, OP_IMAGE, OP_NOISE,
@@ -29,7 +30,8 @@ fn globals() -> Globals {
         seed_lo: 1,
         seed_hi: 2,
         camera_medium: 0,
-        _pad: [0; 2],
+        rr_depth: 2,
+        _pad: 0,
     }
 }
 
@@ -132,6 +134,17 @@ fn good() -> SceneArrays {
         material: material(MaterialKind::Interface),
         ..bytemuck::Zeroable::zeroed()
     });
+    a.partial_spheres.push(PartialSphere {
+        material: material(MaterialKind::Interface),
+        ..bytemuck::Zeroable::zeroed()
+    });
+    a.mesh_patches.push(MeshPatch { vertices: [1, 2, 3, 1], mesh: 0, flip: 0, _pad: [0; 2] });
+    a.curves.push(Curve {
+        material: lambertian,
+        form: CURVE_RIBBON,
+        ..bytemuck::Zeroable::zeroed()
+    });
+    a.ribbons.push(bytemuck::Zeroable::zeroed());
     let placement =
         Placement { world_from_object: Affine::IDENTITY, object_from_world: Affine::IDENTITY };
     a.placements.push(placement);
@@ -168,7 +181,9 @@ fn good() -> SceneArrays {
     a.nodes2.push(root(&[prim(PrimKind::MovingSphere), prim(PrimKind::Instance)]));
     // The tree of the instance.
     a.nodes2.push(root(&[prim(PrimKind::MeshTriangle)]));
-    a.nodes8.push(root(&[prim(PrimKind::Disk), prim(PrimKind::Cylinder)]));
+    let round = [PrimKind::Disk, PrimKind::Cylinder, PrimKind::PartialSphere];
+    let bent = [PrimKind::MeshPatch, PrimKind::Curve];
+    a.nodes8.push(root(&[&round[..], &bent].concat().into_iter().map(prim).collect::<Vec<_>>()));
     a
 }
 
@@ -180,7 +195,7 @@ fn all<T: bytemuck::Pod>(array: zrak_core::accessor::Array<'_, T>) -> Vec<T> {
 #[test]
 fn what_is_packed_is_what_is_seen() {
     let arrays = good();
-    let arena = SceneArena::pack(globals(), &arrays).unwrap();
+    let arena = SceneArena::pack(globals(), arrays.clone()).unwrap();
     assert_eq!(*arena.globals(), globals());
     let view = arena.view();
     macro_rules! compare {
@@ -214,7 +229,7 @@ fn what_is_packed_is_what_is_seen() {
 fn refused(words: &str, damage: impl FnOnce(&mut SceneArrays)) {
     let mut arrays = good();
     damage(&mut arrays);
-    let error = match SceneArena::pack(globals(), &arrays) {
+    let error = match SceneArena::pack(globals(), arrays.clone()) {
         Ok(_) => panic!("damage was not noticed; expected: {words}"),
         Err(error) => error.to_string(),
     };
@@ -305,6 +320,9 @@ fn primitives_out_of_range_are_refused() {
         PrimKind::MeshTriangle,
         PrimKind::Disk,
         PrimKind::Cylinder,
+        PrimKind::PartialSphere,
+        PrimKind::MeshPatch,
+        PrimKind::Curve,
         PrimKind::Instance,
         PrimKind::Medium,
     ] {
@@ -323,7 +341,7 @@ fn boundaries_of_the_wrong_kind_are_refused() {
     for kind in [PrimKind::Sphere, PrimKind::MovingSphere, PrimKind::Box] {
         let mut arrays = good();
         arrays.media[0].boundary = prim(kind);
-        assert!(SceneArena::pack(globals(), &arrays).is_ok());
+        assert!(SceneArena::pack(globals(), arrays.clone()).is_ok());
     }
     refused("no placement", |a| a.media[0].placement = 1);
 }
@@ -353,6 +371,18 @@ fn meshes_that_lead_astray_are_refused() {
     refused("no material", |a| a.meshes[0].material = MaterialRef(0));
     refused("no material", |a| a.disks[0].material = MaterialRef(0));
     refused("no material", |a| a.cylinders[0].material = MaterialRef(0));
+    refused("no material", |a| a.partial_spheres[0].material = MaterialRef(0));
+    refused("no mesh", |a| a.mesh_patches[0].mesh = 1);
+    refused("no vertex", |a| a.mesh_patches[0].vertices[3] = 4);
+    refused("lacks an attribute", |a| a.mesh_patches[0].vertices[3] = 0);
+}
+
+#[test]
+fn curves_that_lead_astray_are_refused() {
+    refused("no material", |a| a.curves[0].material = MaterialRef(0));
+    refused("of form", |a| a.curves[0].form = 3);
+    refused("no normals", |a| a.curves[0].ribbon = 1);
+    refused("halved", |a| a.curves[0].n_halvings = 11);
 }
 
 #[test]
@@ -410,7 +440,7 @@ fn trees_that_are_too_deep_for_the_stack_are_refused() {
         // The tree of the instance comes last.
         arrays.instances[0].root2 = n as u32;
         arrays.nodes2.push(root(&[prim(PrimKind::Sphere)]));
-        SceneArena::pack(globals(), &arrays).map(|_| ()).map_err(|e| e.to_string())
+        SceneArena::pack(globals(), arrays.clone()).map(|_| ()).map_err(|e| e.to_string())
     };
     assert_eq!(chain(MAX_DEPTH), Ok(()));
     assert!(chain(MAX_DEPTH + 1).unwrap_err().contains("too deep"));

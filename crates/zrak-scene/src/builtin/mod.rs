@@ -1,6 +1,6 @@
 //! The scenes that come with zrak: those of *Ray Tracing in One Weekend* and *Ray Tracing: The Next
-//! Week* (Shirley, Black and Hollasch, version 4), as the books build them, one with everything, and a workshop of
-//! what real scenes have besides.
+//! Week* (Shirley, Black and Hollasch, version 4), as the books build them, one with everything, a workshop of
+//! what real scenes have besides, and one of bent shapes.
 //!
 //! Where a book draws random numbers, the scene draws them in the same order from its own seeded
 //! generator, so a built-in scene is the same on every machine but not sphere for sphere the book's.
@@ -18,6 +18,7 @@ mod parts;
 mod perlin_spheres;
 mod quads;
 mod rng;
+mod shapes;
 mod simple_light;
 mod workshop;
 
@@ -91,6 +92,11 @@ pub fn all() -> &'static [Builtin] {
             name: "workshop",
             summary: "Meshes, instances, lights and media: what real scenes are made of, in small",
             build: workshop::workshop,
+        },
+        Builtin {
+            name: "shapes",
+            summary: "Bent shapes: parts of spheres, bilinear patches, hair, grass and thread",
+            build: shapes::shapes,
         },
     ]
 }

@@ -19,7 +19,7 @@ pub(super) fn scene(
         name: name.to_owned(),
         description: summary.to_owned(),
         camera,
-        render: RenderDesc { samples_per_pixel, max_depth: 50, seed: 0 },
+        render: RenderDesc { samples_per_pixel, ..RenderDesc::default() },
         background,
         ..SceneDesc::default()
     }
@@ -107,6 +107,9 @@ pub(super) fn sphere(center: Triple, radius: f64, material: &str) -> ObjectDesc 
         center,
         center_end: None,
         radius,
+        z_min: None,
+        z_max: None,
+        phi_max_deg: None,
         material: material.to_owned(),
         transform: Vec::new(),
     }
@@ -123,6 +126,9 @@ pub(super) fn moving_sphere(
         center,
         center_end: Some(center_end),
         radius,
+        z_min: None,
+        z_max: None,
+        phi_max_deg: None,
         material,
         transform: Vec::new(),
     }

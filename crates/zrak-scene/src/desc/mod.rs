@@ -24,7 +24,7 @@ pub use materials::{
     PrincipledDesc, RoughnessDesc, RoughnessMap,
 };
 pub use meshes::MeshDesc;
-pub use objects::{BoundaryDesc, ObjectDesc};
+pub use objects::{BoundaryDesc, CurveForm, ObjectDesc};
 pub use textures::{
     ColorDesc, FractalPattern, ImageChannel, ImageEncoding, ImageFilter, MappingDesc, NoisePattern,
     ScalarDesc, TextureDesc, WrapMode,
@@ -105,13 +105,17 @@ pub struct RenderDesc {
     pub samples_per_pixel: u32,
     /// Greatest number of ray segments of a path, the camera ray being the first.
     pub max_depth: u32,
+    /// Number of ray segments after which paths that carry little may be ended by chance (Russian
+    /// roulette), which saves time and keeps the mean. No less than `max_depth` for never.
+    #[serde(default = "default_rr_depth", skip_serializing_if = "is_default_rr_depth")]
+    pub rr_depth: u32,
     /// Seed of every random number of the picture.
     pub seed: u64,
 }
 
 impl Default for RenderDesc {
     fn default() -> Self {
-        Self { samples_per_pixel: 100, max_depth: 50, seed: 0 }
+        Self { samples_per_pixel: 100, max_depth: 50, rr_depth: default_rr_depth(), seed: 0 }
     }
 }
 
@@ -127,6 +131,14 @@ pub struct MediumDesc {
     /// Mean cosine of the scattering angle, in (-1, 1): negative scatters back, 0 evenly.
     #[serde(default)]
     pub g: f64,
+}
+
+fn default_rr_depth() -> u32 {
+    2
+}
+
+fn is_default_rr_depth(n: &u32) -> bool {
+    *n == default_rr_depth()
 }
 
 fn one() -> f64 {

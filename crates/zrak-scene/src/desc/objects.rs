@@ -9,7 +9,7 @@ use super::{TransformStep, Triple};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum ObjectDesc {
-    /// Sphere, still or moving on a line.
+    /// Sphere, still or moving on a line, or a part of one.
     Sphere {
         /// Centre, at time 0 if it moves.
         center: Triple,
@@ -18,6 +18,16 @@ pub enum ObjectDesc {
         center_end: Option<Triple>,
         /// Radius.
         radius: f64,
+        /// For a part of a sphere, its lower end relative to the centre.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        z_min: Option<f64>,
+        /// For a part of a sphere, its upper end relative to the centre.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        z_max: Option<f64>,
+        /// For a part of a sphere, the angle that it covers about the z axis through its centre, from
+        /// the x axis towards y.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        phi_max_deg: Option<f64>,
         /// Name of its material.
         material: String,
         /// Steps applied in order, the first first.
@@ -127,6 +137,25 @@ pub enum ObjectDesc {
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         transform: Vec<TransformStep>,
     },
+    /// Curve of cubic Bézier segments with a width: a hair, a blade of grass, a thread.
+    Curve {
+        /// Control points: 4 for the first segment, whose last is the first of the next, and 3 more for
+        /// each.
+        points: Vec<Triple>,
+        /// Width at the start and at the end; in between it changes evenly from segment to segment.
+        widths: [f64; 2],
+        /// What it looks like across.
+        #[serde(default)]
+        form: CurveForm,
+        /// For a ribbon, the normal at the start of each segment and at the end of the last.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        normals: Vec<Triple>,
+        /// Name of its material.
+        material: String,
+        /// Steps applied in order, the first first.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        transform: Vec<TransformStep>,
+    },
     /// All objects of a prototype, which are stored once however often they are placed.
     Instance {
         /// Name of the prototype.
@@ -146,6 +175,19 @@ pub enum ObjectDesc {
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         transform: Vec<TransformStep>,
     },
+}
+
+/// What a curve looks like across.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CurveForm {
+    /// Flat, and turned to whoever looks.
+    #[default]
+    Flat,
+    /// Round, as far as its normals go.
+    Cylinder,
+    /// Flat, with normals of its own.
+    Ribbon,
 }
 
 fn full_turn() -> f64 {

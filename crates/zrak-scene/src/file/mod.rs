@@ -60,8 +60,14 @@ impl Source {
 
 /// Reads a scene file.
 pub fn read(path: impl AsRef<Path>) -> Result<LoadedScene, SceneError> {
+    read_within(path, FILE_SIZE_MAX)
+}
+
+/// Reads a scene file of at most so many bytes, and at most [`FILE_SIZE_MAX`].
+pub fn read_within(path: impl AsRef<Path>, max_bytes: u64) -> Result<LoadedScene, SceneError> {
     let path = path.as_ref();
-    let source = Source { origin: path.display().to_string(), text: read_text(path)? };
+    let text = read_text(path, max_bytes.min(FILE_SIZE_MAX))?;
+    let source = Source { origin: path.display().to_string(), text };
     let desc = parse(&source.text, &source.origin)?;
     let base_dir = path.parent().unwrap_or(Path::new("")).to_owned();
     Ok(LoadedScene { desc, base_dir, source })
@@ -143,7 +149,7 @@ fn unknown_format(tree: &Spanned<DeTable<'_>>) -> Option<(Problem, Range<usize>)
     Some((problem, value.span()))
 }
 
-fn read_text(path: &Path) -> Result<String, SceneError> {
+fn read_text(path: &Path, max_bytes: u64) -> Result<String, SceneError> {
     let origin = path.display().to_string();
     let io_error = |io: io::Error| {
         let help = match io.kind() {
@@ -168,9 +174,14 @@ fn read_text(path: &Path) -> Result<String, SceneError> {
     }
     let mut bytes = Vec::new();
     // One byte more than the limit tells a file that is too large, however it grows.
-    let mut reader = File::open(path).map_err(io_error)?.take(FILE_SIZE_MAX + 1);
+    let mut reader = File::open(path).map_err(io_error)?.take(max_bytes + 1);
     reader.read_to_end(&mut bytes).map_err(io_error)?;
-    if bytes.len() as u64 > FILE_SIZE_MAX {
+    if bytes.len() as u64 > max_bytes {
+        if max_bytes < FILE_SIZE_MAX {
+            let help = "if the scene is meant to be so large, raise the limit (--max-bytes)";
+            let message = format!("the file has more than the {max_bytes} bytes it may have");
+            return Err(other(SceneErrorKind::TooLarge, &message, help));
+        }
         let help = "a scene file is TOML text of at most 256 MiB; is this another kind of file?";
         return Err(other(SceneErrorKind::TooLarge, "the file is too large for a scene", help));
     }

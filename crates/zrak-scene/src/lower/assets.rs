@@ -1,15 +1,16 @@
 //! Images that scenes refer to.
 
+use std::borrow::Cow;
 use std::path::{Component, Path, PathBuf};
 
-use zrak_image::{Error, ErrorKind, TextureImage, decode_texture, read_texture};
+use zrak_image::{Error, ErrorKind};
 
 use super::LowerOptions;
 
 /// What the paths of pictures inside zrak start with.
 const BUILTIN: &str = "builtin:";
-/// What the paths of pictures inside the scene's own file start with.
-const EMBEDDED: &str = "embedded:";
+/// What the paths of pictures inside the scene's own file start with; the rest is their name.
+pub const EMBEDDED: &str = "embedded:";
 
 /// The pictures inside zrak.
 pub struct Assets;
@@ -25,6 +26,12 @@ impl Assets {
     #[must_use]
     pub fn builtin_name(path: &str) -> Option<&str> {
         path.strip_prefix(BUILTIN)
+    }
+
+    /// The file of a built-in picture.
+    #[must_use]
+    pub fn bytes(name: &str) -> Option<&'static [u8]> {
+        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, bytes)| *bytes)
     }
 
     /// Names of all built-in pictures.
@@ -43,12 +50,15 @@ pub enum MissingTextures {
     Warn,
 }
 
-/// Reads the image at `path`: relative to the scene's folder, built in, or embedded in the scene's file.
-pub(super) fn read(path: &str, options: &LowerOptions) -> Result<TextureImage, Error> {
-    let limits = &options.image_limits;
+/// The bytes of the image at `path`: relative to the scene's folder, built in, or embedded in the scene's
+/// file; and the path that errors call it.
+pub(super) fn read<'a>(
+    path: &str,
+    options: &'a LowerOptions,
+) -> Result<(Cow<'a, [u8]>, PathBuf), Error> {
     if let Some(name) = Assets::builtin_name(path) {
-        return match Assets::ALL.iter().find(|(known, _)| *known == name) {
-            Some((_, bytes)) => decode_texture(bytes, Path::new(path), limits),
+        return match Assets::bytes(name) {
+            Some(bytes) => Ok((Cow::Borrowed(bytes), PathBuf::from(path))),
             None => {
                 let known: Vec<_> = Assets::names().collect();
                 let known = known.join(", ");
@@ -59,7 +69,7 @@ pub(super) fn read(path: &str, options: &LowerOptions) -> Result<TextureImage, E
     }
     if let Some(name) = path.strip_prefix(EMBEDDED) {
         return match options.embedded.get(name) {
-            Some(bytes) => decode_texture(bytes, Path::new(path), limits),
+            Some(bytes) => Ok((Cow::Borrowed(&**bytes), PathBuf::from(path))),
             None => {
                 let message = format!(
                     "there is no picture '{name}' in the scene's file; save the picture as a file"
@@ -68,11 +78,16 @@ pub(super) fn read(path: &str, options: &LowerOptions) -> Result<TextureImage, E
             }
         };
     }
-    read_texture(&resolve(path, options)?, limits)
+    let path = resolve(path, options)?;
+    let bytes = zrak_image::read_image_file(&path, &options.image_limits)?;
+    Ok((Cow::Owned(bytes), path))
 }
 
 /// Path of a file that a scene names, if it may be read.
-pub(super) fn resolve(path: &str, options: &LowerOptions) -> Result<PathBuf, Error> {
+///
+/// # Errors
+/// It is outside of the scene's folder, and that is not allowed.
+pub fn resolve(path: &str, options: &LowerOptions) -> Result<PathBuf, Error> {
     let base = if options.base_dir.as_os_str().is_empty() {
         Path::new(".")
     } else {

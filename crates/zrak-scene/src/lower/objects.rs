@@ -12,15 +12,17 @@ use zrak_core::math::{Vec3, vec3};
 use zrak_core::media::{ConstantMedium, NO_PLACEMENT};
 use zrak_core::scene::{MaterialRef, PrimKind, PrimRef};
 use zrak_core::shapes::{
-    Box3, Cylinder, Disk, Instance, Motion, MovingSphere, NEEDS_UV, NO_MOTION, Placement, Quad,
-    Sphere, Triangle,
+    Box3, Cylinder, Disk, Instance, Motion, MovingSphere, NEEDS_UV, NO_MOTION, PartialSphere,
+    Placement, Quad, Sphere, Triangle,
 };
 
+use super::budget;
+use super::curves::{self, CurveParts};
 use super::meshes::Meshes;
 use super::surfaces::LoweredMaterial;
 use super::transform::Transform;
 use crate::arena::SceneArrays;
-use crate::desc::{BoundaryDesc, ObjectDesc, SceneDesc, Triple};
+use crate::desc::{BoundaryDesc, ObjectDesc, SceneDesc, TransformStep, Triple};
 use crate::validate::Problem;
 
 /// Most instances that a scene may have once its prototypes are flattened.
@@ -34,6 +36,16 @@ pub(super) struct LoweredObjects {
     pub(super) sets: Vec<Vec<PrimRef>>,
     /// For each instance of the arrays, the set that it places.
     pub(super) set_of_instance: Vec<u32>,
+}
+
+impl LoweredObjects {
+    /// About the bytes of the trees over all of it: a binary node for each primitive, and a wide one for
+    /// every third.
+    pub(super) fn n_tree_bytes(&self, n_instances: usize) -> u64 {
+        let nodes = |n: usize| n as u64 * 64 + n.div_ceil(3) as u64 * 256;
+        self.sets.iter().map(|set| nodes(set.len().max(1))).sum::<u64>()
+            + nodes(self.world.len() + n_instances)
+    }
 }
 
 /// A set of primitives, and where it stands.
@@ -50,6 +62,8 @@ struct Part {
 struct Content {
     prims: Vec<PrimRef>,
     parts: Vec<Part>,
+    /// The set that the curves before were put into, and its map.
+    curves: Option<(Transform, u32)>,
 }
 
 /// Lowers all objects.
@@ -116,9 +130,42 @@ impl<'a> Lowering<'a, '_, '_> {
 
     fn object(&mut self, object: &'a ObjectDesc, parent: &Transform, content: &mut Content) {
         match object {
-            ObjectDesc::Sphere { center, center_end, radius, material, transform } => {
+            ObjectDesc::Sphere {
+                center,
+                center_end,
+                radius,
+                z_min,
+                z_max,
+                phi_max_deg,
+                material,
+                transform,
+            } => {
                 let to_world = Transform::of_steps(transform).then(parent);
                 let material = self.materials[material.as_str()];
+                if z_min.is_some() || z_max.is_some() || phi_max_deg.is_some() {
+                    let part = partial_sphere(
+                        *radius,
+                        [z_min.unwrap_or(-radius), z_max.unwrap_or(*radius)],
+                        phi_max_deg.unwrap_or(360.0),
+                        material.handle,
+                    );
+                    self.arrays.partial_spheres.push(part);
+                    let index = self.arrays.partial_spheres.len() as u32 - 1;
+                    let prim = PrimRef::new(PrimKind::PartialSphere, index);
+                    let at = |center: Triple| {
+                        Transform::of_steps(&[TransformStep::Translate(center)]).then(&to_world)
+                    };
+                    let start = at(*center);
+                    let end = center_end.map(at);
+                    if start == Transform::IDENTITY && end.is_none() {
+                        content.prims.push(prim);
+                    } else {
+                        self.sets.push(vec![prim]);
+                        let set = self.sets.len() as u32 - 1;
+                        content.parts.push(Part { set, start, end });
+                    }
+                    return;
+                }
                 let (prim, placed) =
                     self.sphere(*center, *center_end, *radius, material, &to_world);
                 self.put(prim, placed.then_some(to_world), content);
@@ -166,6 +213,12 @@ impl<'a> Lowering<'a, '_, '_> {
                 let prim = PrimRef::new(PrimKind::Cylinder, index);
                 self.put(prim, (to_world != Transform::IDENTITY).then_some(to_world), content);
             }
+            ObjectDesc::Curve { points, widths, form, normals, material, transform } => {
+                let to_world = Transform::of_steps(transform).then(parent);
+                let material = self.materials[material.as_str()].handle;
+                let curve = CurveParts { points, widths: *widths, form: *form, normals, material };
+                self.curve(&curve, &to_world, content);
+            }
             ObjectDesc::Mesh { mesh, material, group_materials, flip, transform } => {
                 let to_world = Transform::of_steps(transform).then(parent);
                 let materials: Vec<MaterialRef> = std::iter::once(material)
@@ -179,7 +232,17 @@ impl<'a> Lowering<'a, '_, '_> {
                 let end = transform_end.as_ref().map(|t| Transform::of_steps(t).then(parent));
                 let parts = self.prototype(prototype);
                 if content.parts.len() + parts.len() > INSTANCES_MAX {
-                    self.too_many();
+                    let message = format!(
+                        "the scene's prototypes come to more than {INSTANCES_MAX} instances once they \
+                         are placed"
+                    );
+                    self.refuse(message, "place fewer of those that contain others");
+                    return;
+                }
+                // Small files can ask for many parts by prototypes in prototypes.
+                let n_bytes = parts.len() as u64 * size_of::<Part>() as u64;
+                if let Err(message) = self.meshes.budget.spend(n_bytes) {
+                    self.refuse(message, budget::HELP);
                     return;
                 }
                 content.parts.extend(parts.iter().map(|part| Part {
@@ -242,6 +305,35 @@ impl<'a> Lowering<'a, '_, '_> {
         }
     }
 
+    /// Adds the parts of a curve: in the world if widths stay widths there, else under the map.
+    fn curve(&mut self, curve: &CurveParts<'_>, to_world: &Transform, content: &mut Content) {
+        let (map, placed) = match curves::scale(to_world) {
+            Some(scale) => (Some((to_world, scale)), false),
+            None => (None, true),
+        };
+        let Some(prims) = curves::add(curve, map, self.arrays) else {
+            let message = "the scene's curves come to more than 2^28 parts".to_owned();
+            if self.problems.iter().all(|p| p.message != message) {
+                self.problems.push(Problem { path: Default::default(), message, help: None });
+            }
+            return;
+        };
+        if !placed {
+            content.prims.extend(prims);
+            return;
+        }
+        // Hairs come by the thousand under one map: they share an instance.
+        match content.curves {
+            Some((map, set)) if map == *to_world => self.sets[set as usize].extend(prims),
+            _ => {
+                self.sets.push(prims.collect());
+                let set = self.sets.len() as u32 - 1;
+                content.parts.push(Part { set, start: *to_world, end: None });
+                content.curves = Some((*to_world, set));
+            }
+        }
+    }
+
     fn mesh(
         &mut self,
         name: &'a str,
@@ -295,12 +387,10 @@ impl<'a> Lowering<'a, '_, '_> {
         parts
     }
 
-    fn too_many(&mut self) {
-        let message = format!(
-            "the scene's prototypes come to more than {INSTANCES_MAX} instances once they are placed"
-        );
+    /// Notes a problem of the whole scene, once.
+    fn refuse(&mut self, message: String, help: &str) {
         if self.problems.iter().all(|p| p.message != message) {
-            let help = Some("place fewer of those that contain others".to_owned());
+            let help = Some(help.to_owned());
             self.problems.push(Problem { path: Default::default(), message, help });
         }
     }
@@ -404,6 +494,27 @@ fn quad(corner: Triple, u: Triple, v: Triple, material: MaterialRef, to_world: &
         quad.normal = -quad.normal;
     }
     quad
+}
+
+/// A part of a sphere about the origin.
+fn partial_sphere(
+    radius: f64,
+    [z_min, z_max]: [f64; 2],
+    phi_max_deg: f64,
+    material: MaterialRef,
+) -> PartialSphere {
+    let theta = |z: f64| libm::acos((z / radius).clamp(-1.0, 1.0));
+    // Where nothing is cut off, rounding must not do it.
+    PartialSphere {
+        radius: radius as f32,
+        z_min: if z_min > -radius { z_min } else { -2.0 * radius } as f32,
+        z_max: if z_max < radius { z_max } else { 2.0 * radius } as f32,
+        phi_max: phi_max_deg.to_radians() as f32,
+        theta_low: theta(z_min) as f32,
+        theta_span: (theta(z_max) - theta(z_min)) as f32,
+        material,
+        _pad: 0,
+    }
 }
 
 fn triangle(

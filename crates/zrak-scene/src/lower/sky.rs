@@ -132,11 +132,12 @@ impl Atmosphere {
             std::array::from_fn(|i| f(FIRST_NM + STEP_NM * i as f64))
         };
         let rayleigh = |nm: f64| 1.240_62e-6 * libm::pow(nm / 1000.0, -4.0);
-        // Turbidity is the optical thickness of air and aerosols over that of air alone, in green light.
-        let aerosol = (turbidity - 1.0).max(0.0) * rayleigh(550.0) * AIR_HEIGHT / AEROSOL_HEIGHT;
+        // Angstrom's law with the coefficient that Preetham et al. give a turbidity (*A Practical Analytic
+        // Model for Daylight*, SIGGRAPH 1999, appendix A1).
+        let beta = (0.046_08 * turbidity - 0.045_86).max(0.0) / AEROSOL_HEIGHT;
         Self {
             air: per_nm(&rayleigh),
-            aerosol: per_nm(&|nm| aerosol * libm::pow(nm / 550.0, -1.3)),
+            aerosol: per_nm(&|nm| beta * libm::pow(nm / 1000.0, -1.3)),
             // The Chappuis band, whose cross-section has its maximum of 5.1e-25 m^2 near 603 nm; with
             // 300 Dobson units between 10 and 40 km.
             ozone: per_nm(&|nm| {

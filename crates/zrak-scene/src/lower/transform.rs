@@ -108,11 +108,16 @@ impl Transform {
     /// uniform scales.
     #[must_use]
     pub fn uniform_scale(&self) -> Option<f64> {
+        self.uniform_scale_within(1e-14)
+    }
+
+    /// The same, with a tolerance relative to the square of the factor.
+    pub(super) fn uniform_scale_within(&self, tolerance: f64) -> Option<f64> {
         let column = |j: usize| [self.rows[0][j], self.rows[1][j], self.rows[2][j]];
         let dot = |a: Triple, b: Triple| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let columns = [column(0), column(1), column(2)];
         let s2 = dot(columns[0], columns[0]);
-        let close = |x: f64, y: f64| (x - y).abs() <= 1e-14 * s2;
+        let close = |x: f64, y: f64| (x - y).abs() <= tolerance * s2;
         let same = close(dot(columns[1], columns[1]), s2) && close(dot(columns[2], columns[2]), s2);
         let orthogonal = close(dot(columns[0], columns[1]), 0.0)
             && close(dot(columns[1], columns[2]), 0.0)

@@ -20,41 +20,55 @@ fn mesh_of(checker: &mut Checker<'_>, mesh: &MeshDesc) {
     match mesh {
         MeshDesc::File { path } => {
             if path.is_empty() {
-                let help = "name a PLY file, relative to the scene file";
+                let help = "name a PLY or OBJ file, relative to the scene file";
                 checker.note("path", "`path` is empty", Some(help));
             }
         }
         MeshDesc::Inline { positions, triangles, normals, uvs, colors } => {
             let n = positions.len();
-            if n == 0 || triangles.is_empty() {
-                checker.note("", "the mesh has no triangles", None);
-            }
-            for (key, len) in
-                [("normals", normals.len()), ("uvs", uvs.len()), ("colors", colors.len())]
-            {
-                if len != 0 && len != n {
-                    let message = format!(
-                        "`{key}` must have one entry for each of the {n} positions, has {len}"
-                    );
-                    checker.note(key, message, None);
-                }
-            }
+            faces(checker, "triangle", n, triangles);
+            attribute(checker, "normals", n, normals);
+            attribute(checker, "uvs", n, uvs);
+            attribute(checker, "colors", n, colors);
             numbers(checker, "positions", positions);
-            numbers(checker, "normals", normals);
-            numbers(checker, "uvs", uvs);
-            numbers(checker, "colors", colors);
-            checker.enter("triangles", |checker| {
-                let beyond = |corners: &[u32; 3]| corners.iter().any(|&v| v as usize >= n);
-                if let Some(i) = triangles.iter().position(beyond) {
-                    let message = format!("the triangle has a corner beyond the {n} positions");
-                    let help = "corners are counted from 0";
-                    checker.note_at(checker.path().join(i), message, Some(help));
-                }
-            });
+        }
+        MeshDesc::Patches { positions, patches, normals, uvs } => {
+            let n = positions.len();
+            faces(checker, "patch", n, patches);
+            attribute(checker, "normals", n, normals);
+            attribute(checker, "uvs", n, uvs);
+            numbers(checker, "positions", positions);
         }
         // Importers have checked it.
         MeshDesc::Loaded(_) => {}
     }
+}
+
+/// Checks the triangles or patches of a mesh of `n` vertices.
+fn faces<const N: usize>(checker: &mut Checker<'_>, what: &str, n: usize, faces: &[[u32; N]]) {
+    let key = if N == 3 { "triangles" } else { "patches" };
+    if n == 0 || faces.is_empty() {
+        checker.note("", format!("the mesh has no {key}"), None);
+    }
+    let beyond = |corners: &[u32; N]| corners.iter().any(|&v| v as usize >= n);
+    if let Some(i) = faces.iter().position(beyond) {
+        checker.enter(key, |checker| {
+            let message = format!("the {what} has a corner beyond the {n} positions");
+            let help = "corners are counted from 0";
+            checker.note_at(checker.path().join(i), message, Some(help));
+        });
+    }
+}
+
+/// Checks that there is one value for each of `n` vertices, or none.
+fn attribute<const N: usize>(checker: &mut Checker<'_>, key: &str, n: usize, values: &[[f32; N]]) {
+    let len = values.len();
+    if len != 0 && len != n {
+        let message =
+            format!("`{key}` must have one entry for each of the {n} positions, has {len}");
+        checker.note(key, message, None);
+    }
+    numbers(checker, key, values);
 }
 
 fn numbers<const N: usize>(checker: &mut Checker<'_>, key: &str, values: &[[f32; N]]) {

@@ -5,6 +5,7 @@
 //! Images are looked at later, when they are read.
 
 mod checker;
+mod curves;
 mod lights;
 pub mod limits;
 mod materials;
@@ -142,6 +143,7 @@ fn render(checker: &mut Checker<'_>, render: &RenderDesc) {
     for (key, value, max) in [
         ("samples_per_pixel", render.samples_per_pixel, SAMPLES_MAX),
         ("max_depth", render.max_depth, DEPTH_MAX),
+        ("rr_depth", render.rr_depth, DEPTH_MAX),
     ] {
         if value == 0 || value > max {
             checker.note(key, format!("`{key}` must be from 1 to {max}, is {value}"), None);

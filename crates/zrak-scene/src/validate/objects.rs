@@ -37,8 +37,18 @@ fn check_one(
     n_groups: usize,
 ) {
     match object {
-        ObjectDesc::Sphere { center, center_end, radius, material, transform } => {
+        ObjectDesc::Sphere {
+            center,
+            center_end,
+            radius,
+            z_min,
+            z_max,
+            phi_max_deg,
+            material,
+            transform,
+        } => {
             let corners = sphere(checker, *center, *center_end, *radius);
+            sphere_part(checker, *radius, *z_min, *z_max, *phi_max_deg);
             surface(checker, material);
             let map = transforms::check(checker, transform, outer);
             reach(checker, map, corners);
@@ -127,6 +137,12 @@ fn check_one(
             let corners = [[-radius, -radius, *z_min], [*radius, *radius, *z_max]];
             reach(checker, map, good.then(|| corners.to_vec()));
         }
+        ObjectDesc::Curve { points, widths, form, normals, material, transform } => {
+            let corners = super::curves::check(checker, points, *widths, *form, normals);
+            surface(checker, material);
+            let map = transforms::check(checker, transform, outer);
+            reach(checker, map, corners);
+        }
         ObjectDesc::Instance { prototype, transform, transform_end } => {
             let prototypes = &checker.scene.prototypes;
             if !prototypes.contains_key(prototype) {
@@ -168,6 +184,29 @@ fn sphere(
     let ends = [Some(center), center_end];
     let corners = |c: Triple| [c.map(|x| x - radius), c.map(|x| x + radius)];
     good.then(|| ends.into_iter().flatten().flat_map(corners).collect())
+}
+
+/// Checks what there is of a sphere.
+fn sphere_part(
+    checker: &mut Checker<'_>,
+    radius: f64,
+    z_min: Option<f64>,
+    z_max: Option<f64>,
+    phi_max_deg: Option<f64>,
+) {
+    let help = "both are relative to the centre";
+    let low = z_min.unwrap_or(-radius);
+    if let Some(z_min) = z_min {
+        let ok = |x: f64| x < radius;
+        checker.require("z_min", z_min, ok, "less than `radius`", Some(help));
+    }
+    if let Some(z_max) = z_max {
+        let ok = |x: f64| x > -radius && x - low.max(-radius) >= LENGTH_MIN;
+        checker.require("z_max", z_max, ok, "more than `z_min` and `-radius`", Some(help));
+    }
+    if let Some(degrees) = phi_max_deg {
+        angle(checker, degrees);
+    }
 }
 
 fn quad(checker: &mut Checker<'_>, corner: Triple, u: Triple, v: Triple) -> Option<Vec<Triple>> {

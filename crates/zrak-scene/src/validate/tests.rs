@@ -377,6 +377,53 @@ fn transforms() {
 }
 
 #[test]
+fn parts_of_spheres() {
+    let sphere = "kind = 'sphere', center = [0, 5, 0], radius = 2, material = 'glass'";
+    check_object(&format!("{sphere}, z_min = -1, z_max = 0.5, phi_max_deg = 90"), &[]);
+    check_object(&format!("{sphere}, z_min = -9, z_max = 9, center_end = [1, 5, 0]"), &[]);
+    for (part, key, words) in [
+        ("z_min = 2", "z_min", "less than `radius`"),
+        ("z_max = -2", "z_max", "more than"),
+        ("z_min = 1, z_max = 1", "z_max", "more than"),
+        ("phi_max_deg = 0", "phi_max_deg", "more than 0"),
+        ("phi_max_deg = 361", "phi_max_deg", "360"),
+        ("z_min = nan", "z_min", "finite"),
+    ] {
+        check_object(&format!("{sphere}, {part}"), &[(&format!("objects[0].{key}"), words)]);
+    }
+}
+
+#[test]
+fn curves() {
+    let points = "points = [[0, 0, 0], [1, 0, 0], [2, 1, 0], [3, 0, 0]]";
+    let curve = |rest: &str| format!("kind = 'curve', material = 'glass', {rest}");
+    check_object(&curve(&format!("{points}, widths = [0.1, 0]")), &[]);
+    let ribbon = format!("{points}, widths = [1, 1], form = 'ribbon'");
+    check_object(&curve(&format!("{ribbon}, normals = [[0, 0, 1], [0, 1, 0]]")), &[]);
+    for (rest, key, words) in [
+        ("points = [], widths = [1, 1]".to_owned(), "points", "4, 7"),
+        (
+            "points = [[0, 0, 0], [1, 1, 1], [2, 2, 2]], widths = [1, 1]".to_owned(),
+            "points",
+            "4, 7",
+        ),
+        (
+            "points = [[1, 1, 1], [1, 1, 1], [1, 1, 1], [1, 1, 1]], widths = [1, 1]".to_owned(),
+            "points",
+            "no length",
+        ),
+        (format!("{points}, widths = [0, 0]"), "widths", "not both 0"),
+        (format!("{points}, widths = [-1, 2]"), "widths", "not be negative"),
+        (format!("{points}, widths = [inf, 2]"), "widths[0]", "must lie in"),
+        (format!("{points}, widths = [1, 1], normals = [[0, 0, 1]]"), "normals", "only ribbons"),
+        (ribbon.clone(), "normals", "2 normals"),
+        (format!("{ribbon}, normals = [[0, 0, 1], [0, 0, 0]]"), "normals[1]", "no direction"),
+    ] {
+        check_object(&curve(&rest), &[(&format!("objects[0].{key}"), words)]);
+    }
+}
+
+#[test]
 fn groups() {
     let sphere = "kind = 'sphere', center = [0, 0, 0], radius = 1, material = 'glass'";
     // Harmless steps that together are not.

@@ -42,9 +42,11 @@ fn run(
     choice: BackendChoice,
     gpu: Result<u32, BackendErrorKind>,
 ) -> (Result<RenderOutput, Error>, Vec<String>) {
-    let open = |kind| -> Result<Box<dyn Backend>, BackendError> {
+    let open = |kind| -> Result<Box<dyn Backend + Send>, BackendError> {
         match (kind, gpu) {
-            (Kind::Cpu, _) => Ok(Box::new(Flaky { name: "cpu", n_passes_left: 100 })),
+            (Kind::Cpu | Kind::Hybrid, _) => {
+                Ok(Box::new(Flaky { name: "cpu", n_passes_left: 100 }))
+            }
             (Kind::Cuda, Ok(n_passes_left)) => Ok(Box::new(Flaky { name: "cuda", n_passes_left })),
             (Kind::Cuda, Err(kind)) => Err(BackendError::new(kind, "no NVIDIA driver")),
         }

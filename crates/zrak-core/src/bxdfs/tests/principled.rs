@@ -7,7 +7,7 @@ use crate::math::{Color, Vec3, vec3};
 use crate::testing::Rng;
 
 /// The specification's defaults.
-fn defaults() -> PrincipledParams {
+pub(super) fn defaults() -> PrincipledParams {
     PrincipledParams {
         base_weight: 1.0,
         base_color: Color::grey(0.8),

@@ -16,7 +16,7 @@ use crate::testing::{
 };
 
 /// Direction to the side of `n` that `side` says, often almost along the surface.
-fn leaving(rng: &mut Rng, n: Vec3, side: f64) -> Vec3 {
+pub(super) fn leaving(rng: &mut Rng, n: Vec3, side: f64) -> Vec3 {
     let n = scaled(double(n), side);
     loop {
         let w = match rng.below(4) {

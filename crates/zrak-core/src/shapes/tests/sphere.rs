@@ -247,3 +247,40 @@ fn texture_coordinates_follow_the_book() {
         );
     }
 }
+
+#[test]
+fn grazing_rays_come_from_the_side_that_they_come_from() {
+    let mut rng = Rng::new(77);
+    let mut n_hits = 0;
+    for i in 0..400_000 {
+        let radius = [1.0, 1e-3, 100.0][i % 3];
+        let center = vec3(0.0, -1.01 * radius, 0.3 * radius);
+        let sphere = Sphere {
+            center,
+            radius,
+            material: crate::scene::MaterialRef::default(),
+            flags: 0,
+            _pad: [0; 2],
+        };
+        // Along tangents, from afar or from next to the point that they touch, to within rounding.
+        let n = crate::math::square_to_uniform_sphere(
+            rng.range(0.0, 1.0) as f32,
+            rng.range(0.0, 1.0) as f32,
+        );
+        let (s, t) = crate::media::tangents(n);
+        let (x, y) =
+            crate::math::square_to_uniform_disk(1.0 - f32::EPSILON, rng.range(0.0, 1.0) as f32);
+        let d = (s * x + t * y).normalized();
+        let touch = center + n * (radius * (1.0 + rng.range(-3e-7, 3e-7) as f32));
+        let ray = Ray { o: touch - d * (radius * rng.range(0.001, 3.0) as f32), d, time: 0.0 };
+        if let Some(t) = sphere.intersect(&ray) {
+            n_hits += 1;
+            let oc = center - ray.o;
+            let is_outside = crate::math::dot(oc, oc) > radius * radius;
+            let surface = sphere.interaction(&ray, t);
+            assert_eq!(surface.is_front(d), is_outside, "{sphere:?} {ray:?}");
+            assert!((surface.n.length() - 1.0).abs() < 1e-6);
+        }
+    }
+    assert!(n_hits > 100_000, "{n_hits}");
+}

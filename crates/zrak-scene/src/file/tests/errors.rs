@@ -62,7 +62,7 @@ fn an_error_looks_like_this() {
 21 | radus = 1
    | ^^^^^ objects[0]
    |
-   = help: the fields here are `kind`, `center`, `center_end`, `radius`, `material` and `transform`
+   = help: the fields here are `kind`, `center`, `center_end`, `radius`, `z_min`, `z_max`, `phi_max_deg`, `material` and `transform`
 
 error: invalid type: string "x", expected a number
   --> test.toml:28:11

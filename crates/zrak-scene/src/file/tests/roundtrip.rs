@@ -187,15 +187,36 @@ fn boundary() -> impl Strategy<Value = BoundaryDesc> {
 fn object() -> impl Strategy<Value = ObjectDesc> {
     let uv = || [number(), number()];
     let shape = prop_oneof![
-        (triple(), option::of(triple()), number(), name(), transform()).prop_map(
-            |(center, center_end, radius, material, transform)| ObjectDesc::Sphere {
-                center,
-                center_end,
-                radius,
-                material,
-                transform
-            }
-        ),
+        (
+            (triple(), option::of(triple()), number()),
+            [option::of(number()), option::of(number()), option::of(number())],
+            name(),
+            transform()
+        )
+            .prop_map(|((center, center_end, radius), part, material, transform)| {
+                let [z_min, z_max, phi_max_deg] = part;
+                ObjectDesc::Sphere {
+                    center,
+                    center_end,
+                    radius,
+                    z_min,
+                    z_max,
+                    phi_max_deg,
+                    material,
+                    transform,
+                }
+            }),
+        (
+            vec(triple(), 0..5),
+            [number(), number()],
+            prop_oneof![Just(CurveForm::Flat), Just(CurveForm::Cylinder), Just(CurveForm::Ribbon)],
+            vec(triple(), 0..3),
+            name(),
+            transform()
+        )
+            .prop_map(|(points, widths, form, normals, material, transform)| {
+                ObjectDesc::Curve { points, widths, form, normals, material, transform }
+            }),
         (triple(), triple(), triple(), name(), transform()).prop_map(
             |(corner, u, v, material, transform)| ObjectDesc::Quad {
                 corner,
@@ -260,7 +281,8 @@ prop_compose! {
         materials in btree_map(name(), material(), 0..4),
         objects in vec(object(), 0..4),
     ) -> SceneDesc {
-        let render = RenderDesc { samples_per_pixel, max_depth, seed };
+        let rr_depth = max_depth / 2;
+        let render = RenderDesc { samples_per_pixel, max_depth, rr_depth, seed };
         SceneDesc { format: 1, name, description, camera, render, background, textures, materials, objects, ..SceneDesc::default() }
     }
 }

@@ -11,12 +11,21 @@ use super::super::Transform;
 use super::{Rng, arena, scene};
 use crate::arena::SceneArena;
 use crate::desc::{
-    BoundaryDesc, ColorDesc, ImageFilter, LightSides, MaterialDesc, ObjectDesc, ScaleDesc,
-    TextureDesc, TransformStep, Triple,
+    BoundaryDesc, ColorDesc, CurveForm, ImageFilter, LightSides, MaterialDesc, MeshDesc,
+    ObjectDesc, ScaleDesc, TextureDesc, TransformStep, Triple,
 };
 
 fn sphere(center: Triple, radius: f64, transform: Vec<TransformStep>) -> ObjectDesc {
-    ObjectDesc::Sphere { center, center_end: None, radius, material: "m".to_owned(), transform }
+    ObjectDesc::Sphere {
+        center,
+        center_end: None,
+        radius,
+        z_min: None,
+        z_max: None,
+        phi_max_deg: None,
+        material: "m".to_owned(),
+        transform,
+    }
 }
 
 fn cuboid(min: Triple, max: Triple, transform: Vec<TransformStep>) -> ObjectDesc {
@@ -30,6 +39,31 @@ fn quad(corner: Triple, u: Triple, v: Triple, transform: Vec<TransformStep>) -> 
 fn triangle(vertices: [Triple; 3], transform: Vec<TransformStep>) -> ObjectDesc {
     let uv = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
     ObjectDesc::Triangle { vertices, uv, material: "m".to_owned(), transform }
+}
+
+fn curve(form: CurveForm, transform: Vec<TransformStep>) -> ObjectDesc {
+    let points = vec![[-0.9, -0.3, 0.0], [-0.3, 0.9, 0.2], [0.3, -0.5, -0.4], [0.9, 0.4, 0.1]];
+    let normals = vec![[0.3, 0.2, 1.0], [0.0, -0.4, 1.0]];
+    let normals = if form == CurveForm::Ribbon { normals } else { Vec::new() };
+    let (widths, material) = ([0.4, 0.3], "m".to_owned());
+    ObjectDesc::Curve { points, widths, form, normals, material, transform }
+}
+
+/// One that is bent, and a parallelogram.
+fn patches() -> MeshDesc {
+    MeshDesc::Patches {
+        positions: vec![
+            [-0.9, -0.8, 0.0],
+            [0.9, -0.9, 0.5],
+            [-0.8, 0.9, 0.6],
+            [0.7, 0.8, -0.2],
+            [0.9, 0.1, -1.1],
+            [0.7, 1.8, -1.8],
+        ],
+        patches: vec![[0, 1, 2, 3], [1, 4, 3, 5]],
+        normals: Vec::new(),
+        uvs: Vec::new(),
+    }
 }
 
 fn hit(arena: &SceneArena, ray: &Ray) -> Option<SurfaceInteraction> {
@@ -97,12 +131,37 @@ fn hits_move_with_their_objects() {
         let steps = random_steps(&mut rng);
         let map = Transform::of_steps(&steps);
         let back = map.inverse().unwrap();
-        let objects: [&dyn Fn(Vec<TransformStep>) -> ObjectDesc; 4] = [
+        let objects: [&dyn Fn(Vec<TransformStep>) -> ObjectDesc; 9] = [
             &|steps| sphere([0.1, 0.2, 0.3], 0.9, steps),
             &|steps| cuboid([-0.5, -0.6, -0.7], [0.8, 0.7, 0.6], steps),
             &|steps| quad([-0.8, -0.7, 0.1], [1.5, 0.1, 0.2], [0.2, 1.6, -0.3], steps),
             &|steps| triangle([[-0.9, -0.8, 0.0], [0.9, -0.7, 0.3], [0.0, 0.9, -0.2]], steps),
+            &|steps| ObjectDesc::Sphere {
+                center: [0.1, 0.2, 0.3],
+                center_end: None,
+                radius: 0.9,
+                z_min: Some(-0.7),
+                z_max: Some(0.5),
+                phi_max_deg: Some(300.0),
+                material: "m".to_owned(),
+                transform: steps,
+            },
+            &|steps| curve(CurveForm::Flat, steps),
+            &|steps| curve(CurveForm::Cylinder, steps),
+            &|steps| curve(CurveForm::Ribbon, steps),
+            &|steps| ObjectDesc::Mesh {
+                mesh: "patches".to_owned(),
+                material: "m".to_owned(),
+                group_materials: Vec::new(),
+                flip: false,
+                transform: steps,
+            },
         ];
+        let scene = |objects| {
+            let mut desc = scene(objects);
+            desc.meshes.insert("patches".to_owned(), patches());
+            desc
+        };
         for object in objects {
             let plain = arena(&scene(vec![object(Vec::new())]));
             let moved = arena(&scene(vec![object(steps.clone())]));
@@ -246,6 +305,9 @@ fn moving_spheres_move_under_transforms() {
         center: [0.0; 3],
         center_end: Some([1.0, 0.0, 0.0]),
         radius: 0.5,
+        z_min: None,
+        z_max: None,
+        phi_max_deg: None,
         material: "m".to_owned(),
         transform,
     };
@@ -258,4 +320,71 @@ fn moving_spheres_move_under_transforms() {
     let ray = Ray { o: vec3(-5.0, 2.0, 0.0), d: vec3(1.0, 0.0, 0.0), time: 1.0 };
     assert!((hit(&arena, &ray).unwrap().p.x + 1.0).abs() < 1e-5);
     assert!(hit(&arena, &Ray { time: 0.0, ..ray }).is_none());
+}
+
+#[test]
+fn flat_patches_are_quads_and_others_are_not() {
+    let corners = |last: [f32; 3]| vec![[0.0; 3], [1.0, 0.0, 0.5], [0.0, 2.0, 0.0], last];
+    let flat = [1.0, 2.0, 0.5];
+    let normals = vec![[0.0, 0.0, 1.0]; 4];
+    let default_uvs = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+    // Corners, normals, texture coordinates, and the numbers of quads and patches.
+    let cases = [
+        (corners(flat), Vec::new(), Vec::new(), [1, 0]),
+        (corners(flat), Vec::new(), default_uvs, [1, 0]),
+        (corners([1.0, 2.0, 0.501]), Vec::new(), Vec::new(), [0, 1]),
+        (corners(flat), normals, Vec::new(), [0, 1]),
+        (corners(flat), Vec::new(), vec![[0.5; 2]; 4], [0, 1]),
+        // On a line: nothing.
+        (vec![[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]], Vec::new(), Vec::new(), [0, 0]),
+    ];
+    for (positions, normals, uvs, expected) in cases {
+        let mut desc = scene(vec![ObjectDesc::Mesh {
+            mesh: "patches".to_owned(),
+            material: "m".to_owned(),
+            group_materials: Vec::new(),
+            flip: false,
+            transform: Vec::new(),
+        }]);
+        let mesh = MeshDesc::Patches { positions, patches: vec![[0, 1, 2, 3]], normals, uvs };
+        desc.meshes.insert("patches".to_owned(), mesh);
+        let arena = arena(&desc);
+        let view = arena.view();
+        assert_eq!([view.quads.len(), view.mesh_patches.len()], expected, "{desc:?}");
+    }
+}
+
+/// Hairs under one map that the renderer cannot apply to them share an instance, and their parts join.
+#[test]
+fn curves_are_cut_where_it_pays() {
+    let squash = vec![TransformStep::Scale(ScaleDesc::PerAxis([1.0, 2.0, 1.0]))];
+    let turn = vec![TransformStep::RotateXDeg(30.0), TransformStep::Scale(ScaleDesc::Uniform(2.0))];
+    let hairs = |steps: &Vec<TransformStep>| {
+        (0..10).map(|_| curve(CurveForm::Ribbon, steps.clone())).collect::<Vec<_>>()
+    };
+    assert_eq!(n_instances(hairs(&squash)), 1);
+    assert_eq!(n_instances(hairs(&turn)), 0);
+    let arena = arena(&scene(hairs(&turn)));
+    let view = arena.view();
+    let n = view.curves.len() / 10;
+    assert!((2..=8).contains(&n) && view.ribbons.len() == 1, "{n} {}", view.ribbons.len());
+    for i in 1..n {
+        let (a, b) = (view.curves.get(i - 1), view.curves.get(i));
+        assert_eq!((a.points[3], a.widths[1], a.u[1]), (b.points[0], b.widths[0], b.u[0]));
+    }
+    let (first, last) = (view.curves.get(0), view.curves.get(n - 1));
+    assert_eq!((first.u[0], last.u[1]), (0.0, 1.0));
+    assert_eq!((first.widths[0], last.widths[1]), (0.8, 0.6));
+    // Along an axis there is nothing to gain.
+    let points = [0.0, 1.0, 2.0, 3.0].map(|x| [x, 0.0, 0.0]).to_vec();
+    let straight = ObjectDesc::Curve {
+        points,
+        widths: [0.1; 2],
+        form: CurveForm::Flat,
+        normals: Vec::new(),
+        material: "m".to_owned(),
+        transform: Vec::new(),
+    };
+    let arena = self::arena(&scene(vec![straight]));
+    assert_eq!((arena.view().curves.len(), arena.view().curves.get(0).n_halvings), (1, 0));
 }

@@ -13,7 +13,16 @@ use crate::lower::{Assets, LowerOptions, lower};
 
 fn sphere(material: &str) -> ObjectDesc {
     let (center_end, material, transform) = (None, material.to_owned(), Vec::new());
-    ObjectDesc::Sphere { center: [0.0; 3], center_end, radius: 1.0, material, transform }
+    ObjectDesc::Sphere {
+        center: [0.0; 3],
+        center_end,
+        radius: 1.0,
+        z_min: None,
+        z_max: None,
+        phi_max_deg: None,
+        material,
+        transform,
+    }
 }
 
 fn texture(name: &str) -> ColorDesc {

@@ -15,7 +15,8 @@ use zrak_core::textures::{
 };
 
 use self::raster::Rasters;
-use super::LowerOptions;
+use super::budget::Budget;
+use super::{LoadedImage, LowerOptions};
 use crate::arena::SceneArrays;
 use crate::desc::{
     ColorDesc, ImageChannel, ImageEncoding, ImageFilter, NoisePattern, ScalarDesc, SceneDesc,
@@ -121,16 +122,17 @@ impl<'a> Textures<'a> {
         arrays.image_maps.len() as u32 - 1
     }
 
-    /// Reads all images that were asked for. To be called at the end.
+    /// Reads all images that were asked for, and says which are there. To be called at the end.
     pub(super) fn read_images(
         self,
         options: &LowerOptions,
+        budget: &Budget,
         arrays: &mut SceneArrays,
         warnings: &mut Vec<Problem>,
-    ) -> Result<(), Vec<Problem>> {
+    ) -> Result<Vec<LoadedImage>, Vec<Problem>> {
         let mut problems = self.problems;
-        self.rasters.read(options, arrays, &mut problems, warnings);
-        if problems.is_empty() { Ok(()) } else { Err(problems) }
+        let images = self.rasters.read(options, budget, arrays, &mut problems, warnings);
+        if problems.is_empty() { Ok(images) } else { Err(problems) }
     }
 
     fn texture(&mut self, arrays: &mut SceneArrays, name: &'a str, role: Role) -> LoweredInput {

@@ -7,13 +7,17 @@ use rayon::prelude::*;
 use zrak_core::textures::{
     ImageTexture, MAX_LEVELS, TEXELS_LINEAR, TEXELS_SRGB8, TEXELS_UNORM8, TEXELS_UNORM16,
 };
-use zrak_image::{Texels, TextureImage, linear_to_srgb8, srgb8_to_linear_table, srgb16_to_linear};
+use zrak_image::{
+    Texels, TextureImage, decode_texture, linear_to_srgb8, srgb8_to_linear_table, srgb16_to_linear,
+};
 
 use super::Role;
 use crate::arena::SceneArrays;
 use crate::desc::{ImageEncoding, ImageFilter, SceneDesc, TextureDesc};
-use crate::lower::LowerOptions;
 use crate::lower::assets::{self, MissingTextures};
+use crate::lower::budget::{self, Budget};
+use crate::lower::{LoadedImage, LowerOptions};
+use crate::progress::LoadStage;
 use crate::validate::{KeyPath, Problem};
 
 /// An image that is asked for.
@@ -93,29 +97,37 @@ impl<'a> Rasters<'a> {
     pub(super) fn read(
         self,
         options: &LowerOptions,
+        budget: &Budget,
         arrays: &mut SceneArrays,
         problems: &mut Vec<Problem>,
         warnings: &mut Vec<Problem>,
-    ) {
+    ) -> Vec<LoadedImage> {
+        let mut images = Vec::new();
         if self.requests.is_empty() {
-            return;
+            return images;
         }
+        options.progress.begin(LoadStage::Images, self.requests.len() as u64);
         let read = |request: &Request| {
-            let image = assets::read(request.path, options)?;
-            Ok(Raster::new(&image, request.is_srgb, request.has_levels))
+            let raster = Raster::read(request, options, budget);
+            options.progress.add(1);
+            raster
         };
-        let read: Vec<Result<Raster, zrak_image::Error>> =
-            self.requests.par_iter().map(read).collect();
+        let read: Vec<Result<Raster, Unread>> = self.requests.par_iter().map(read).collect();
         arrays.srgb_table = srgb8_to_linear_table().to_vec();
         let mut n_words = arrays.texels.len() as u64;
         let mut placed = Vec::new();
         for (raster, request) in read.into_iter().zip(self.requests) {
-            let raster = raster.unwrap_or_else(|error| {
-                let problem = |message| Problem { path: request.key.clone(), message, help: None };
-                match options.missing_textures {
-                    MissingTextures::Error => problems.push(problem(error.to_string())),
-                    MissingTextures::Warn => {
-                        warnings.push(problem(format!("{error}; mid grey stands for it")));
+            let problem = |message, help| Problem { path: request.key.clone(), message, help };
+            let raster = raster.unwrap_or_else(|unread| {
+                match (unread, options.missing_textures) {
+                    (Unread::NoRoom(message), _) => {
+                        problems.push(problem(message, Some(budget::HELP.to_owned())));
+                    }
+                    (Unread::Image(error), MissingTextures::Error) => {
+                        problems.push(problem(error.to_string(), None));
+                    }
+                    (Unread::Image(error), MissingTextures::Warn) => {
+                        warnings.push(problem(format!("{error}; mid grey stands for it"), None));
                     }
                 }
                 Raster::mid_grey()
@@ -123,11 +135,11 @@ impl<'a> Rasters<'a> {
             n_words += raster.words.len() as u64;
             if n_words > u64::from(u32::MAX) {
                 let message = "the scene's images have more than 16 GiB of texels".to_owned();
-                let help = Some("make some of them smaller".to_owned());
-                problems.push(Problem { path: request.key, message, help });
-                return;
+                problems.push(problem(message, Some("make some of them smaller".to_owned())));
+                return images;
             }
             let first_word = arrays.texels.len() as u32;
+            images.push(LoadedImage { path: request.path.to_owned(), first_word });
             arrays.texels.extend_from_slice(&raster.words);
             let Raster { width, height, format, n_levels, .. } = raster;
             placed.push((first_word, width, height, format, n_levels));
@@ -144,10 +156,37 @@ impl<'a> Rasters<'a> {
             let map = &mut arrays.image_maps[index];
             map.n_levels = complete(&mut map.raster, id);
         }
+        images
+    }
+}
+
+/// Why an image could not be read.
+enum Unread {
+    /// It is missing, damaged or too large by itself.
+    Image(zrak_image::Error),
+    /// There is no memory left for it.
+    NoRoom(String),
+}
+
+impl From<zrak_image::Error> for Unread {
+    fn from(error: zrak_image::Error) -> Self {
+        Self::Image(error)
     }
 }
 
 impl Raster {
+    fn read(request: &Request, options: &LowerOptions, budget: &Budget) -> Result<Self, Unread> {
+        let limits = &options.image_limits;
+        let (bytes, path) = assets::read(request.path, options)?;
+        let n_bytes = zrak_image::texel_bytes(&bytes, &path, limits)?;
+        // Deep codes of sRGB become floats.
+        let n_bytes = if request.is_srgb { n_bytes + n_bytes / 2 } else { n_bytes };
+        let n_bytes = if request.has_levels { n_bytes + n_bytes / 3 } else { n_bytes };
+        budget.spend(n_bytes).map_err(Unread::NoRoom)?;
+        let image = decode_texture(&bytes, &path, limits)?;
+        Ok(Self::new(&image, request.is_srgb, request.has_levels))
+    }
+
     fn mid_grey() -> Self {
         let words = vec![u32::from_le_bytes([188, 188, 188, 255])];
         Self { width: 1, height: 1, format: TEXELS_SRGB8, n_levels: 1, words }
