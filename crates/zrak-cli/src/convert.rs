@@ -15,16 +15,17 @@ Examples:
   zrak convert cover -o cover.toml           a built-in scene, to be changed
   zrak convert box.pbrt -o box.toml          a scene for pbrt-v4 as one for zrak
   zrak convert scene.toml -o scene.glb       for programs that read glTF
+  zrak convert model.glb -o model.pbrt       for pbrt-v4
   zrak convert final --spp 1000 | less       as a scene file, to the standard output
 
-Meshes and pictures that a .toml refers to are kept beside it, in FILE.files.";
+Meshes and pictures that a .toml or .pbrt refers to are kept beside it, in FILE.files.";
 
 /// Options of `zrak convert`.
 #[derive(Args, Debug)]
 pub(crate) struct ConvertArgs {
     /// Built-in scene (see `zrak scenes`) or path of a .toml, .pbrt, .gltf or .glb file
     scene: PathBuf,
-    /// File to write, .toml or .glb; `-` is a scene file on the standard output
+    /// File to write, .toml, .glb or .pbrt; `-` is a scene file on the standard output
     #[arg(long, short, value_name = "FILE", default_value = "-")]
     output: PathBuf,
     /// Say nothing but errors

@@ -37,22 +37,31 @@ pub fn read_file(path: &Path, limits: &Limits) -> Result<Vec<u8>, Error> {
     if !metadata.is_file() {
         return Err(Error::new(format!("{shown} is not a file")));
     }
-    let too_large = || {
-        Error::new(format!(
-            "{shown} is larger than the limit of {} bytes; raise the limit if the file is meant",
-            limits.max_bytes
-        ))
-    };
     if metadata.len() > limits.max_bytes {
-        return Err(too_large());
+        return Err(too_large(path, limits));
     }
     let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
-    file.read_to_end(&mut bytes).map_err(failed)?;
+    // The file may be growing meanwhile.
+    (&mut file).take(limits.max_bytes).read_to_end(&mut bytes).map_err(failed)?;
+    unpack(bytes, path, limits)
+}
+
+/// The bytes of a file that was read, unpacked if they are gzip-ed; `path` is what errors call it.
+///
+/// # Errors
+/// If it is damaged, or larger than the limits allow.
+pub fn unpack(bytes: Vec<u8>, path: &Path, limits: &Limits) -> Result<Vec<u8>, Error> {
+    let shown = path.display();
+    let too_large = || too_large(path, limits);
+    if bytes.len() as u64 > limits.max_bytes {
+        return Err(too_large());
+    }
     if !bytes.starts_with(&GZIP_MAGIC) {
         return Ok(bytes);
     }
     let mut unpacked = Vec::new();
-    let mut decoder = MultiGzDecoder::new(bytes.as_slice()).take(limits.max_bytes + 1);
+    let mut decoder =
+        MultiGzDecoder::new(bytes.as_slice()).take(limits.max_bytes.saturating_add(1));
     decoder
         .read_to_end(&mut unpacked)
         .map_err(|error| Error::new(format!("{shown} is damaged: {error}")))?;
@@ -60,4 +69,12 @@ pub fn read_file(path: &Path, limits: &Limits) -> Result<Vec<u8>, Error> {
         return Err(too_large());
     }
     Ok(unpacked)
+}
+
+fn too_large(path: &Path, limits: &Limits) -> Error {
+    Error::new(format!(
+        "{} is larger than the limit of {} bytes; raise the limit if the file is meant",
+        path.display(),
+        limits.max_bytes
+    ))
 }

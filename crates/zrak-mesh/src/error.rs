@@ -52,7 +52,8 @@ impl Error {
     }
 
     /// The same, in this file.
-    pub(crate) fn in_file(mut self, file: impl fmt::Display) -> Self {
+    #[must_use]
+    pub fn in_file(mut self, file: impl fmt::Display) -> Self {
         self.file = file.to_string();
         self
     }

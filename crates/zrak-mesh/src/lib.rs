@@ -18,7 +18,7 @@ mod triangulate;
 
 use std::path::Path;
 
-pub use bytes::{Limits, read_file};
+pub use bytes::{Limits, read_file, unpack};
 pub use error::{Error, Place};
 pub use mesh::TriangleMesh;
 pub use subdivide::loop_subdivide;

@@ -6,10 +6,13 @@
 
 use std::collections::HashMap;
 
-use crate::{Error, TriangleMesh};
+use crate::{Error, Limits, TriangleMesh};
 
 /// Most triangles that a subdivision may come to.
 const TRIANGLES_MAX: u64 = 1 << 28;
+
+/// About what a triangle of the result takes in memory while it is made.
+const BYTES_PER_TRIANGLE: u64 = 256;
 
 /// What surrounds each vertex of a mesh.
 struct Neighbours {
@@ -22,11 +25,12 @@ struct Neighbours {
 ///
 /// # Errors
 /// If it is not a manifold (an edge of three triangles, two sheets that meet in a point, or neighbours
-/// of opposite orientation), or the result would be too large.
+/// of opposite orientation), or the result would be too large for the limits.
 pub fn loop_subdivide(
     positions: &[[f32; 3]],
     triangles: &[[u32; 3]],
     levels: u32,
+    limits: &Limits,
 ) -> Result<TriangleMesh, Error> {
     let control = TriangleMesh {
         positions: positions.to_vec(),
@@ -34,13 +38,12 @@ pub fn loop_subdivide(
         ..TriangleMesh::default()
     };
     control.validate()?;
+    let most = TRIANGLES_MAX.min(limits.max_bytes / BYTES_PER_TRIANGLE);
     let n = (triangles.len() as u64).checked_shl(2 * levels.min(31));
-    if levels > 24
-        || n.is_none_or(|n| n > TRIANGLES_MAX || n >> (2 * levels) != triangles.len() as u64)
-    {
+    if levels > 24 || n.is_none_or(|n| n > most || n >> (2 * levels) != triangles.len() as u64) {
         return Err(Error::new(format!(
-            "{levels} levels of subdivision of {} triangles are too many; at most {TRIANGLES_MAX} \
-             triangles can come of it",
+            "{levels} levels of subdivision of {} triangles are too many; at most {most} \
+             triangles may come of it",
             triangles.len()
         )));
     }
@@ -274,7 +277,15 @@ fn unit(v: [f64; 3]) -> [f64; 3] {
 
 #[cfg(test)]
 mod tests {
-    use super::loop_subdivide;
+    use crate::{Error, Limits, TriangleMesh};
+
+    fn loop_subdivide(
+        points: &[[f32; 3]],
+        triangles: &[[u32; 3]],
+        levels: u32,
+    ) -> Result<TriangleMesh, Error> {
+        super::loop_subdivide(points, triangles, levels, &Limits::default())
+    }
 
     const OCTAHEDRON: ([[f32; 3]; 6], [[u32; 3]; 8]) = (
         [
@@ -348,5 +359,9 @@ mod tests {
         }
         let error = loop_subdivide(&points, &[[0, 1, 2]], 20).unwrap_err().to_string();
         assert!(error.contains("too many"), "{error}");
+        let limits = Limits { max_bytes: 1 << 20 };
+        let error =
+            super::loop_subdivide(&points, &[[0, 1, 2]], 8, &limits).unwrap_err().to_string();
+        assert!(error.contains("at most 4096 triangles"), "{error}");
     }
 }

@@ -59,7 +59,7 @@ impl Importer {
 
     fn spectrum_file(&mut self, name: &str, span: &Span) -> Result<Spectrum> {
         let path = self.sources.resolve(name, span)?;
-        if !path.is_file() {
+        if !self.sources.is_file(&path) {
             let message = format!("there is no spectrum \"{name}\", by name or as a file");
             let fault = Fault::new(span, message);
             return Err(match zrak_scene::suggest::closest(name, spectrum::names()) {

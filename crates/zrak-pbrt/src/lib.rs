@@ -42,6 +42,7 @@ mod textures;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 pub use export::{ExportOptions, Exported, Sink, export, export_to};
@@ -54,7 +55,7 @@ use zrak_scene::error::SceneError;
 pub struct ImportOptions {
     /// Whether files outside of the scene's folder may be read.
     pub allow_external: bool,
-    /// Most bytes of all files together, once they are unpacked.
+    /// Most bytes of all files together, once they are unpacked, and of the meshes made of them.
     pub max_bytes: u64,
 }
 
@@ -99,5 +100,18 @@ pub struct Imported {
 /// # Errors
 /// If it, or a file that it includes, cannot be read or is not a pbrt-v4 scene. The error shows the place.
 pub fn import(path: &Path, options: &ImportOptions) -> Result<Imported, SceneError> {
-    state::Importer::new(path, *options)?.run()
+    state::Importer::new(path, source::Store::Disk, *options)?.run()
+}
+
+/// Reads a scene whose files are in memory, by their paths relative to the scene's folder: those that the
+/// scene includes, its spectra and its PLY meshes. Pictures stay paths, as they do in [`import`].
+///
+/// # Errors
+/// As for [`import`]; a file that is not in `files` cannot be read.
+pub fn import_from_memory(
+    path: &Path,
+    files: BTreeMap<PathBuf, Vec<u8>>,
+    options: &ImportOptions,
+) -> Result<Imported, SceneError> {
+    state::Importer::new(path, source::Store::Memory(files), *options)?.run()
 }

@@ -78,6 +78,9 @@ impl Importer {
     /// Mean over a picture of luminance times a weight by column and row, each from 0 to 1; none if it
     /// cannot be read, which is an error later.
     fn mean_luminance(&self, path: &str, weight: impl Fn(f64, f64) -> f64) -> Option<f64> {
+        if !self.sources.has_pictures() {
+            return None;
+        }
         let picture = zrak_image::read_picture(&self.sources.base().join(path)).ok()?;
         let (w, h) = (picture.width as usize, picture.height as usize);
         let mut sum = 0.0;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use zrak_mesh::{TriangleMesh, loop_subdivide, ply};
+use zrak_mesh::TriangleMesh;
 use zrak_scene::desc::{MeshDesc, ObjectDesc, TransformStep};
 
 use crate::curves::curve;
@@ -83,7 +83,9 @@ impl Importer {
                 let levels = params.integer("levels")?.unwrap_or(3).clamp(0, 64) as u32;
                 params.ignore(&["scheme"]);
                 let control = triangle_mesh(at, params)?;
-                let mesh = loop_subdivide(&control.positions, &control.triangles, levels)
+                let mesh = self
+                    .sources
+                    .subdivided(&control, levels)
                     .map_err(|error| Fault::new(at, error.to_string()))?;
                 self.mesh(mesh, material, flip, at)?
             }
@@ -94,8 +96,7 @@ impl Importer {
                 let name = name.to_owned();
                 let path = self.sources.resolve(&name, at)?;
                 params.ignore(&["displacement", "displacement.edgelength"]);
-                let mesh = ply::read(&path, &self.sources.limits())
-                    .map_err(|error| Fault::new(at, error.to_string()))?;
+                let mesh = self.sources.mesh(&path, at)?;
                 self.mesh(mesh, material, flip, at)?
             }
             "bilinearmesh" => {
@@ -156,6 +157,7 @@ impl Importer {
         at: &Span,
     ) -> Result<ObjectDesc> {
         mesh.validate().map_err(|error| Fault::new(at, error.to_string()))?;
+        self.sources.spend(mesh.n_bytes() as u64, at)?;
         let name = self.fresh("mesh");
         self.desc.meshes.insert(name.clone(), MeshDesc::Loaded(Arc::new(mesh)));
         Ok(placed_mesh(name, material, flip))

@@ -1,14 +1,72 @@
 //! The files of a scene: where they may be, and which are open.
 
+use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
-use zrak_mesh::Limits;
+use zrak_mesh::{Limits, TriangleMesh, loop_subdivide, ply};
 
 use crate::error::{Fault, Result, Span};
 use crate::{ImportOptions, Warning};
 
 /// How deep files may include each other.
 const DEPTH_MAX: usize = 64;
+
+/// What an opened file takes at least of the limit of bytes: files of a few bytes that include each other
+/// many times would be read for ever before they reached it.
+const FILE_COST_MIN: u64 = 4096;
+
+/// Where files are.
+#[derive(Debug)]
+pub(crate) enum Store {
+    /// On disk.
+    Disk,
+    /// In memory, by their paths relative to the scene's folder.
+    Memory(BTreeMap<PathBuf, Vec<u8>>),
+}
+
+impl Store {
+    pub(crate) fn is_file(&self, path: &Path) -> bool {
+        match self {
+            Self::Disk => path.is_file(),
+            Self::Memory(files) => files.contains_key(&plain(path)),
+        }
+    }
+
+    /// The one path of a file that several may lead to, if it exists.
+    fn canonical(&self, path: &Path) -> Option<PathBuf> {
+        match self {
+            Self::Disk => path.canonicalize().ok(),
+            Self::Memory(_) => Some(plain(path)),
+        }
+    }
+
+    /// The bytes of a file, unpacked.
+    fn read(&self, path: &Path, limits: &Limits) -> std::result::Result<Vec<u8>, String> {
+        match self {
+            Self::Disk => zrak_mesh::read_file(path, limits).map_err(|error| error.to_string()),
+            Self::Memory(files) => match files.get(&plain(path)) {
+                Some(bytes) => zrak_mesh::unpack(bytes.clone(), path, limits)
+                    .map_err(|error| error.to_string()),
+                None => Err(format!("cannot read {}: there is no such file", path.display())),
+            },
+        }
+    }
+}
+
+/// A path without `.` and `..`.
+fn plain(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir => {
+                plain.pop();
+            }
+            _ => plain.push(part),
+        }
+    }
+    plain
+}
 
 /// A file that was read.
 #[derive(Debug)]
@@ -35,14 +93,22 @@ pub(crate) struct Sources {
     pub(crate) files: Vec<File>,
     pub(crate) open: Vec<Open>,
     base: PathBuf,
+    store: Store,
     options: ImportOptions,
     n_bytes: u64,
 }
 
 impl Sources {
-    pub(crate) fn new(base: &Path, options: ImportOptions) -> Self {
+    pub(crate) fn new(base: &Path, store: Store, options: ImportOptions) -> Self {
         let base = if base.as_os_str().is_empty() { Path::new(".") } else { base };
-        Self { files: Vec::new(), open: Vec::new(), base: base.to_owned(), options, n_bytes: 0 }
+        Self {
+            files: Vec::new(),
+            open: Vec::new(),
+            base: base.to_owned(),
+            store,
+            options,
+            n_bytes: 0,
+        }
     }
 
     pub(crate) fn base(&self) -> &Path {
@@ -72,7 +138,8 @@ impl Sources {
             }
         }
         // A link may lead anywhere.
-        if let (Ok(real), Ok(base)) = (path.canonicalize(), self.base.canonicalize())
+        if let (Some(real), Some(base)) =
+            (self.store.canonical(&path), self.store.canonical(&self.base))
             && !real.starts_with(base)
         {
             return Err(leaves());
@@ -87,13 +154,57 @@ impl Sources {
 
     /// The text of a file, which counts towards the limit.
     pub(crate) fn read(&mut self, path: &Path, span: &Span) -> Result<String> {
-        let bytes = zrak_mesh::read_file(path, &self.limits())
-            .map_err(|error| Fault::new(span, error.to_string()))?;
-        self.n_bytes += bytes.len() as u64;
+        let bytes =
+            self.store.read(path, &self.limits()).map_err(|message| Fault::new(span, message))?;
+        self.spend(FILE_COST_MIN.max(bytes.len() as u64), span)?;
         String::from_utf8(bytes).map_err(|error| {
             let at = error.utf8_error().valid_up_to();
             Fault::new(span, format!("{} is not UTF-8 text (byte {at})", path.display()))
         })
+    }
+
+    /// The mesh of a PLY file.
+    pub(crate) fn mesh(&self, path: &Path, span: &Span) -> Result<TriangleMesh> {
+        let limits = self.limits();
+        let mesh = match &self.store {
+            Store::Disk => ply::read(path, &limits).map_err(|error| error.to_string()),
+            store => store.read(path, &limits).and_then(|bytes| {
+                ply::parse(&bytes, &limits)
+                    .map_err(|error| error.in_file(path.display()).to_string())
+            }),
+        };
+        mesh.map_err(|message| Fault::new(span, message))
+    }
+
+    /// A control mesh, subdivided.
+    pub(crate) fn subdivided(
+        &self,
+        control: &TriangleMesh,
+        levels: u32,
+    ) -> std::result::Result<TriangleMesh, zrak_mesh::Error> {
+        loop_subdivide(&control.positions, &control.triangles, levels, &self.limits())
+    }
+
+    /// Counts what was made of the files towards the limit.
+    pub(crate) fn spend(&mut self, n_bytes: u64, span: &Span) -> Result<()> {
+        self.n_bytes = self.n_bytes.saturating_add(n_bytes);
+        if self.n_bytes <= self.options.max_bytes {
+            return Ok(());
+        }
+        let message = format!(
+            "the scene's files and meshes take more than the limit of {} bytes",
+            self.options.max_bytes
+        );
+        Err(Fault::new(span, message).help("raise the limit if the scene is meant"))
+    }
+
+    /// Whether pictures can be looked at: of those of a scene in memory only the paths are known.
+    pub(crate) fn has_pictures(&self) -> bool {
+        matches!(self.store, Store::Disk)
+    }
+
+    pub(crate) fn is_file(&self, path: &Path) -> bool {
+        self.store.is_file(path)
     }
 
     /// Opens a file, to be read before the rest of those that are open.
@@ -102,7 +213,7 @@ impl Sources {
             let message = format!("files include each other more than {DEPTH_MAX} deep");
             return Err(Fault::new(span, message));
         }
-        let canonical = path.canonicalize().unwrap_or_else(|_| path.clone());
+        let canonical = self.store.canonical(&path).unwrap_or_else(|| path.clone());
         if self.open.iter().any(|open| open.canonical == canonical) {
             return Err(Fault::new(span, format!("{} includes itself", path.display())));
         }

@@ -15,7 +15,7 @@ pub(crate) use crate::maths::{Maps, cross, dot, matrix_step, steps, sub};
 use crate::params::{Param, Params};
 use crate::places::Places;
 use crate::references::References;
-use crate::source::Sources;
+use crate::source::{Sources, Store};
 use crate::{ImportOptions, Imported, Warning};
 
 /// An area light that the shapes to come have.
@@ -79,11 +79,12 @@ pub(crate) struct Importer {
 impl Importer {
     pub(crate) fn new(
         path: &Path,
+        store: Store,
         options: ImportOptions,
     ) -> std::result::Result<Self, SceneError> {
         let base = path.parent().unwrap_or(Path::new(""));
         let mut importer = Self {
-            sources: Sources::new(base, options),
+            sources: Sources::new(base, store, options),
             desc: SceneDesc {
                 name: path
                     .file_stem()
@@ -122,7 +123,7 @@ impl Importer {
         let grey = MaterialDesc::Lambertian { color: [0.5; 3].into() };
         importer.desc.materials.insert("default".to_owned(), grey);
         let origin = path.display().to_string();
-        if !path.is_file() {
+        if !importer.sources.is_file(path) {
             let message = "there is no such scene file".to_owned();
             let help = Some("check the path; relative paths start at the current folder");
             return Err(SceneError::file(SceneErrorKind::Io, &origin, message, help));

@@ -332,7 +332,7 @@ impl Importer {
         if name.is_empty() {
             return Err(Fault::new(at, "the name of the picture is empty"));
         }
-        if !path.is_file() {
+        if !self.sources.is_file(&path) {
             self.warn(at, format!("there is no picture {}", path.display()));
         }
         Ok(name.to_owned())
@@ -340,6 +340,9 @@ impl Importer {
 
     /// Whether a file is a PNG of which some texel is not opaque.
     fn has_alpha(&self, name: &str) -> bool {
+        if !self.sources.has_pictures() {
+            return false;
+        }
         let path = self.sources.base().join(name);
         let mut head = [0_u8; 26];
         let is_read = std::fs::File::open(&path)

@@ -206,7 +206,11 @@ fn a_conversion_says_what_is_lost_and_where_it_cannot_write() {
     assert!(ended.stderr.contains("warning: "), "{ended:?}");
     assert_eq!(folder.read("cover.glb")[..4], *b"glTF");
     assert_eq!(folder.ok("convert cover -o cover.glb --quiet").stderr, "");
-    folder.fails("convert cover -o cover.obj", 2, &["error: ", "cover.obj", ".toml or .glb"]);
+    folder.fails(
+        "convert cover -o cover.obj",
+        2,
+        &["error: ", "cover.obj", ".toml, .glb or .pbrt"],
+    );
     folder.fails("convert cover -o none/cover.glb", 4, &["none/cover.glb", "folder"]);
     folder.fails("convert none.pbrt -o x.toml", 3, &["none.pbrt"]);
     folder.write("model.fbx", "Kaydara");

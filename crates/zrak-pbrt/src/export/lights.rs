@@ -74,7 +74,7 @@ impl Writer<'_, '_> {
         let _ = writeln!(self.out, "LightSource \"infinite\"{light}");
         self.warn(format!("the background is written as a picture of {n} x {n} texels"));
         // The sun of a sky is a light of its own.
-        for light in (0..view.lights.len()).map(|i| view.lights.get(i as u32)) {
+        for light in (0..view.lights.len()).map(|i| view.lights.get(i)) {
             if light.kind == LIGHT_DISTANT {
                 let single = |v: [f32; 3]| v.map(f64::from);
                 let d = single(light.direction.to_array());

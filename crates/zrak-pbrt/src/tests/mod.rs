@@ -4,7 +4,7 @@ mod bad_input;
 mod pictures;
 mod round_trip;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use zrak_scene::desc::{
     BackgroundDesc, ColorDesc, ConductorDesc, CurveForm, LightDesc, LightSides, MaterialDesc,
@@ -12,7 +12,7 @@ use zrak_scene::desc::{
 };
 use zrak_scene::validate::validate;
 
-use crate::{ImportOptions, Imported, import};
+use crate::{ImportOptions, Imported, import, import_from_memory};
 
 /// A folder with a scene in it.
 struct Folder(tempfile::TempDir);
@@ -49,6 +49,80 @@ fn refused(text: &str, words: &str) {
     let shown = error.to_string();
     assert!(shown.contains(words), "{shown} does not say {words}");
     assert!(error.line_column().is_some(), "{shown} has no place");
+}
+
+#[test]
+fn files_in_memory_are_read_as_those_in_a_folder() {
+    let mut files = std::collections::BTreeMap::new();
+    let mut put = |name: &str, bytes: &[u8]| files.insert(PathBuf::from(name), bytes.to_vec());
+    put("scene.pbrt", format!("{HEAD}Include \"geometry/all.pbrt\"").as_bytes());
+    let world = "Material \"conductor\" \"spectrum eta\" \"a/../Au.eta.spd\" \
+                 \"spectrum k\" \"./Au.eta.spd\"\nShape \"plymesh\" \"string filename\" \"t.ply\"";
+    put("geometry/all.pbrt", world.as_bytes());
+    put("Au.eta.spd", b"300 1.5\n800 0.2\n");
+    put(
+        "t.ply",
+        b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+          property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
+          0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+    );
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in &files {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, bytes).unwrap();
+    }
+    // On disk, what does not exist has no parent.
+    std::fs::create_dir(folder.path().join("a")).unwrap();
+    let options = ImportOptions::default();
+    let on_disk = import(&folder.path().join("scene.pbrt"), &options).unwrap();
+    let path = Path::new("scene.pbrt");
+    let in_memory = import_from_memory(path, files.clone(), &options).unwrap();
+    assert_eq!(in_memory.desc, on_disk.desc);
+    assert_eq!(in_memory.desc.meshes.len(), 1);
+    for name in ["t.ply", "Au.eta.spd", "geometry/all.pbrt", "scene.pbrt"] {
+        let mut fewer = files.clone();
+        fewer.remove(Path::new(name));
+        let error = import_from_memory(path, fewer, &options).unwrap_err().to_string();
+        assert!(error.contains(name), "{error}");
+    }
+}
+
+#[test]
+fn files_that_include_each_other_many_times_end_at_the_limit() {
+    // 2^60 times in all, and each file is a few bytes.
+    let mut files = std::collections::BTreeMap::new();
+    for i in 0..60 {
+        let next = format!("Include \"{}.pbrt\" ", i + 1);
+        files.insert(PathBuf::from(format!("{i}.pbrt")), next.repeat(2).into_bytes());
+    }
+    files.insert(PathBuf::from("60.pbrt"), b"Identity".to_vec());
+    let options = ImportOptions { max_bytes: 1 << 24, ..ImportOptions::default() };
+    let error = import_from_memory(Path::new("0.pbrt"), files, &options).unwrap_err().to_string();
+    assert!(error.contains("limit"), "{error}");
+}
+
+#[test]
+fn what_files_grow_to_counts_towards_the_limit() {
+    let square = "\"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 1]";
+    for (world, n_times, words) in [
+        ("Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] ".to_owned(), 30_000, "limit"),
+        (
+            format!(
+                "Shape \"loopsubdiv\" \"integer levels\" 10 {square} \"integer indices\" [0 1 2]"
+            ),
+            1,
+            "too many",
+        ),
+    ] {
+        let text = format!("{HEAD}{}", world.repeat(n_times)).into_bytes();
+        let path = Path::new("scene.pbrt");
+        let options =
+            ImportOptions { max_bytes: (1 << 20) + text.len() as u64, allow_external: false };
+        let files = std::collections::BTreeMap::from([(path.to_owned(), text)]);
+        let error = import_from_memory(path, files, &options).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    }
 }
 
 const TRIANGLE: &str = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]\n";
@@ -375,4 +449,13 @@ fn what_has_no_effect_is_warned_about() {
     assert_eq!(shown.len(), 2, "{shown:?}");
     assert!(shown[0].contains("scene.pbrt:5: parameter \"raduis\" is not used here"), "{shown:?}");
     assert!(shown[1].contains(":6: material \"hair\" is rendered as"), "{shown:?}");
+}
+
+#[test]
+fn files_that_include_each_other_are_refused() {
+    let files = [("a.pbrt", "Include \"b.pbrt\""), ("b.pbrt", "Import \"./a.pbrt\"")];
+    let files = files.map(|(name, text)| (PathBuf::from(name), text.as_bytes().to_vec()));
+    let options = ImportOptions::default();
+    let error = import_from_memory(Path::new("a.pbrt"), files.into(), &options).unwrap_err();
+    assert!(error.to_string().contains("includes itself"), "{error}");
 }

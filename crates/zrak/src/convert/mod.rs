@@ -2,6 +2,7 @@
 
 mod files;
 mod glb;
+mod pbrt;
 #[cfg(test)]
 mod tests;
 mod toml;
@@ -20,10 +21,13 @@ pub enum SceneFormat {
     Toml,
     /// Binary glTF 2.0, `.glb`.
     Glb,
+    /// A scene for pbrt-v4, `.pbrt`.
+    Pbrt,
 }
 
 impl SceneFormat {
-    const ALL: [(Self, &'static str); 2] = [(Self::Toml, "toml"), (Self::Glb, "glb")];
+    const ALL: [(Self, &'static str); 3] =
+        [(Self::Toml, "toml"), (Self::Glb, "glb"), (Self::Pbrt, "pbrt")];
 
     /// The format that a file's extension names.
     ///
@@ -33,11 +37,11 @@ impl SceneFormat {
         let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
         let found = Self::ALL.iter().find(|(_, name)| extension.eq_ignore_ascii_case(name));
         found.map(|(format, _)| *format).ok_or_else(|| {
-            let known: Vec<String> = Self::ALL.iter().map(|(_, name)| format!(".{name}")).collect();
+            let [first @ .., last] = Self::ALL.map(|(_, name)| format!(".{name}"));
             let message = format!(
-                "'{}' names no format that scenes are written in; use {}",
+                "'{}' names no format that scenes are written in; use {} or {last}",
                 path.display(),
-                known.join(" or ")
+                first.join(", ")
             );
             Error::new(ErrorKind::InvalidOption, message)
         })
@@ -64,6 +68,7 @@ pub fn convert(scene: &Scene, output: &Path) -> Result<Converted, Error> {
     match SceneFormat::of_path(output)? {
         SceneFormat::Toml => toml::write(scene, output),
         SceneFormat::Glb => glb::write(scene, output),
+        SceneFormat::Pbrt => pbrt::write(scene, output),
     }
 }
 

@@ -235,6 +235,19 @@ fn what_cannot_be_written_leaves_nothing() {
     for name in ["x.obj", "x", "x.toml.gz"] {
         let error = convert(&in_memory(), &folder.path().join(name)).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::InvalidOption);
-        assert!(error.to_string().contains(".toml or .glb"), "{error}");
+        assert!(error.to_string().contains(".toml, .glb or .pbrt"), "{error}");
+    }
+}
+
+#[test]
+fn everything_becomes_a_scene_for_pbrt() {
+    for builtin in builtin::all() {
+        let folder = folder();
+        let path = folder.path().join("scene.pbrt");
+        let converted = convert(&load_scene(builtin.name).unwrap(), &path).unwrap();
+        assert_eq!(converted.files.last(), Some(&path));
+        assert!(converted.files.iter().all(|file| file.is_file()));
+        let read = load_scene(&path).unwrap();
+        read.lower().unwrap();
     }
 }
