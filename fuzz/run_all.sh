@@ -5,10 +5,11 @@
 #
 # FOLDER holds bin/, seeds/ and dictionaries/, as build.sh makes it; OUT (by default FOLDER/results) gets a folder
 # for each target, the table summary.md, and results.tar.gz with the table, the findings and the smallest corpora that
-# cover the same. CORES (by default all) are shared out. TARGETS (by default all) are names in bin/.
+# cover the same; MERGE_SECONDS (600) are spent on looking for these. CORES (by default all) are shared out. TARGETS (by default all) are names in bin/.
 set -uo pipefail
 folder=$(realpath "$1")
 seconds=$2
+merge_seconds=${MERGE_SECONDS:-600}
 out=${3:-$folder/results}
 mkdir -p "$out"
 out=$(realpath "$out")
@@ -62,8 +63,9 @@ run() {
         "$to/corpus" "$folder/seeds/$target") >"$to/log.txt" 2>&1
     # The smallest corpus that covers the same.
     mkdir -p "$to/smallest"
-    (cd "$to" && TMPDIR="$to/tmp" "$folder/bin/$target" -merge=1 -timeout=10 -rss_limit_mb=2048 -max_len="$len" \
-        "$to/smallest" "$to/corpus" "$folder/seeds/$target") >"$to/merge.txt" 2>&1
+    (cd "$to" && TMPDIR="$to/tmp" timeout "$merge_seconds" "$folder/bin/$target" -merge=1 -timeout=10 -rss_limit_mb=2048 -max_len="$len" \
+        "$to/smallest" "$to/corpus" "$folder/seeds/$target") >"$to/merge.txt" 2>&1 ||
+        cp -r "$to/corpus/." "$to/smallest/" # Too little time: all of it.
     (cd "$to" && "$folder/bin/$target" -runs=0 -timeout=10 -rss_limit_mb=2048 -max_len="$len" \
         -artifact_prefix="$to/tmp/" "$to/smallest") >"$to/replay.txt" 2>&1
     rm -rf "$to/tmp"
